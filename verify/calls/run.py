@@ -56,7 +56,12 @@ def run(
     digits: int | None = None,
     observables: Sequence[str] | None = None,
     keeps: Texts = (),
+    form: str = "",
+    density: str = "",
+    poisson: str = "",
+    casimirs: Texts = (),
     reverses: str = "",
+    factor: str = "",
     points: int = 0,
     progress: Progress = None,
 ) -> RunResult:
@@ -83,9 +88,9 @@ def run(
         and lambda, in n degrees of freedom both symplectic defects, and for an H without t both
         energy errors, with the digits that they have then.
     keeps: what is measured of what the step is meant to keep, a text or several: area, symplectic,
-        volume, energy, momentum, angular-momentum, reversible, or the formula of a first integral.
-        Nothing is judged; see `keeps` of the result.
-    reverses: the involution of reversible, as '-p, q', which is the default.
+        volume, energy, momentum, angular-momentum, reversible, symmetric, conformal, poisson, or
+        the formula of a first integral. Nothing is judged; see `keeps` of the result.
+    form, density, poisson, casimirs, reverses, factor: what refines a structure, as in `prove`.
     points: the limit on the states in `orbit` and in `series`, 1 … 10,000; 0 leaves `series` out.
     progress: None for a bar in a notebook, True for one anywhere, False, or a function that is
         called with the number of steps done.
@@ -107,8 +112,11 @@ def run(
         run_in_turn(
             system, scheme, q=q, p=p, start=start, step_size=step_size, steps=steps, time=time,
             t0=t0, parameters=parameters, arithmetic=arithmetic, digits=digits,
-            observables=observables, keeps=keeps, reverses=reverses, points=points,
-            progress=progress,
+            observables=observables, points=points, progress=progress,
+            keeps=KeepsRequest(
+                texts_from("keeps", keeps), form, density, poisson,
+                texts_from("casimirs", casimirs), reverses, factor,
+            ),
         )
     )  # fmt: skip
 
@@ -118,7 +126,7 @@ def run_in_turn(
     step_size: Number, start: Mapping[str, Number] | None = None, steps: int | None,
     time: Number | None, t0: Number = 0, parameters: ParametersLike, arithmetic: str | None = None,
     digits: int | None = None, observables: Sequence[str] | None,
-    keeps: Texts = (), reverses: str = "", points: int = 0, progress: Progress,
+    keeps: KeepsRequest | None = None, points: int = 0, progress: Progress,
 ) -> Course[RunResult]:  # fmt: skip
     """Do `run` as a course, a generator that can be stepped together with others."""
     hamiltonian = hamiltonian_from(system, parameters, takes_field=True)
@@ -131,8 +139,7 @@ def run_in_turn(
     arithmetic = arithmetic or (float64.NAME if digits is None else AUTO)
     if not isinstance(arithmetic, str):
         raise InputError("arithmetic", arithmetic, "is no name of a number system")
-    keeps_request = KeepsRequest(texts_from("keeps", keeps), reverses=reverses)
-    measured = measured_structures(hamiltonian, keeps_request) if keeps_request else ()
+    measured = measured_structures(hamiltonian, keeps) if keeps else ()
     requested = select_observables(hamiltonian, _observable_names(observables))
     requested += tuple(x for structure in measured for x in structure.observables)
     with progress_of(progress, f"{name[:30]}, steps", count) as report:

@@ -93,7 +93,7 @@ def run(
     """Run N steps and report Λ, MSE, max |ΔJ|, H − H₀ and the last state, each with its bound.
 
     With --keeps, what the step keeps is measured too, and not judged: the change of a first
-    integral, the defect of area, of volume or of the symplectic form, the way back.
+    integral, the accumulated defect of a form, of volume or of a bracket, the way back.
 
     With --keep, an interruption costs at most some seconds of work. The file of --csv begins with
     the initial state, and has every step of a run of up to 10,000; of a longer run it has every

@@ -9,7 +9,7 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from itertools import takewhile
-from typing import Any, NamedTuple
+from typing import Any
 
 from verify import observables
 from verify.arithmetic.exact import decimal
@@ -17,7 +17,13 @@ from verify.arithmetic.number_system import Arithmetic, State, SystemNumber
 from verify.arithmetic.systems.float64 import nearest_double
 from verify.kernels.kernel import Kernel, clock_inputs, initial_remainder
 from verify.kernels.last_in_range import last_good
-from verify.kernels.notes import LazyNote, Notes, ReachedPoint, checkpoint_adapter
+from verify.kernels.notes import (
+    LazyNote,
+    Notes,
+    ReachedPoint,
+    RunningPoint,
+    checkpoint_adapter,
+)
 from verify.kernels.run_changes import RunChanges
 from verify.kernels.run_inputs import RunInputs
 from verify.kernels.step import tangent_map
@@ -27,18 +33,6 @@ from verify.scenes.results.run import SeriesPoint
 Progress = Callable[[int], None]  # is called with the number of steps done
 W_ENTRIES = "symplectic_defect_entries"  # a request to note the entries of W in `tangents`
 _EXTREMES = ("dj_low", "dj_high", "lam_low", "lam_high")
-
-
-class _RunningPoint(NamedTuple):
-    """`ReachedPoint` while the loop is running."""
-
-    done: int
-    seconds: float
-    state: State
-    seen: dict[str, Fraction]
-    trail: Notes[Mapping[str, Fraction]]
-    tangents: Notes[Mapping[str, Fraction]]
-    series: Notes[SeriesPoint]
 
 
 class ChunkedLoop:
@@ -64,17 +58,22 @@ class ChunkedLoop:
         # would leave its format.
         self.turns = run.turns(arithmetic)
         self._observables = {each.name: each for each in observables.select(run.observables)}
-        self._changes = RunChanges(run, arithmetic, [*self._observables.values()])
+        self._changes = RunChanges(run, arithmetic, [*self._observables.values()], shift)
         self.state: State = self._first_state()
         self._position = {name: k for k, name in enumerate(kernel.state_names)}
         self._extreme = [name for name in _EXTREMES if name in self._position]
         self._note_names = (*kernel.coordinates, *sorted(self._observables))
-        accumulators = (name for name in kernel.state_names if f"d{name}" in kernel.outputs)
-        self._form = [name for name in accumulators if name.startswith("w_")]
+        self._form = [n for n in kernel.state_names if n[:2] == "w_" and f"d{n}" in kernel.outputs]
         tangent_names = tangent_map.names_of(kernel.coordinates)
         carried_names = (*(name for name in tangent_names if name in self._position), "done")
         self._tangent = carried_names if "growth" in self._position else ()
         self._tangent += tuple(self._form) if W_ENTRIES in run.observables else ()
+        self._tangent += self._changes.parts(kernel.matrix) if self._tangent else ()
+        self._restart: dict[int, float] = {}
+        if run.restarts and self._tangent:
+            self._tangent += tangent_map.entries_of(kernel.coordinates)
+            first = tangent_map.initial_values(kernel.coordinates, kernel.canonical)
+            self._restart = {self._position[n]: float(x) for n, x in first if isinstance(x, int)}
         self._doubles = [k for k, x in enumerate(self.state) if isinstance(x, float)]
         self.section = run.section
         # The label identifies the run: a checkpoint with another label is ignored, since its
@@ -87,7 +86,7 @@ class ChunkedLoop:
         self.done, self.seconds = resumed.done, resumed.seconds
         notes = Notes(resumed.trail), Notes(resumed.tangents), Notes(resumed.series)
         reached = resumed.done, resumed.seconds, resumed.state, resumed.seen
-        self._latest = _RunningPoint(*reached, *notes)
+        self._latest = RunningPoint(*reached, *notes)
 
     def _first_state(self) -> State:
         start = self.run.start | self._changes.start
@@ -151,8 +150,10 @@ class ChunkedLoop:
         to_note, chunk = self.section - self.done % self.section, self.arithmetic.chunk
         chunk = min(chunk, self.turns.steps) if self.turns else chunk
         remaining = self.run.steps - self.done
-        # The first note is the only stop of its call: the run may end there.
-        if self.done and to_note == self.section and 2 * self.section <= min(chunk, remaining):
+        # The first note is the only stop of its call: the run may end there. So is each at which
+        # the tangent map begins anew.
+        is_next = to_note == self.section and not self._restart
+        if self.done and is_next and 2 * self.section <= min(chunk, remaining):
             return self.section, min(chunk, remaining) // self.section
         return min(chunk, to_note, remaining), 1
 
@@ -194,7 +195,8 @@ class ChunkedLoop:
                 series = series.and_then(self._point(len(trail) * self.section + 1, seen))
                 seen = {}
             trail = trail.and_then(LazyNote(self._note_names, self._exact_value, state, done))
-        self._latest = _RunningPoint(done, self.seconds, state, seen, trail, tangents, series)
+            self.state = tuple(self._restart.get(k, x) for k, x in enumerate(state))
+        self._latest = RunningPoint(done, self.seconds, state, seen, trail, tangents, series)
 
     def _extremes(self, state: State) -> dict[str, Fraction]:
         """Return the extremes of ΔJ and Λ since the last note."""

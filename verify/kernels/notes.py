@@ -4,10 +4,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, NamedTuple, TypeVar
 
 from pydantic import PlainSerializer, PlainValidator, TypeAdapter
 
+from verify.arithmetic.number_system import State
 from verify.execution.keeper import fraction_of, fraction_text
 from verify.scenes.results.run import SeriesPoint
 
@@ -102,6 +103,18 @@ class ReachedPoint:
     trail: tuple[Mapping[str, ExactNumber], ...] = ()
     tangents: tuple[Mapping[str, ExactNumber], ...] = ()
     series: tuple[SeriesPoint, ...] = ()
+
+
+class RunningPoint(NamedTuple):
+    """`ReachedPoint` while the loop is running."""
+
+    done: int
+    seconds: float
+    state: State
+    seen: dict[str, Fraction]
+    trail: Notes[Mapping[str, Fraction]]
+    tangents: Notes[Mapping[str, Fraction]]
+    series: Notes[SeriesPoint]
 
 
 @cache

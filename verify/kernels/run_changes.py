@@ -1,9 +1,9 @@
-"""The changes of functions I of the state along a run, read from the numbers of its kernel."""
+"""Changes of functions along a run, and accumulated defects, read from its kernel's numbers."""
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-from verify.arithmetic.arb import make_ball, midpoint_and_radius
+from verify.arithmetic.arb import is_representable, make_ball, midpoint_and_radius
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.errors import InputError
@@ -20,21 +20,32 @@ class UndefinedError(InputError):
 
 
 class RunChanges:
-    """I − I₀ at the end, and max |I − I₀|, for the observables that are made of them.
+    """I − I₀ at the end, max |I − I₀| and accumulated defects, for the observables made of them.
 
     I₀ is taken at the exact initial state, and I at a state as it is, without rounding. `carried`:
-    the functions of which the kernel keeps the least and the greatest values.
+    the functions of which the kernel keeps the least and the greatest values. `shift`: Λ is carried
+    as 2^shift Λ.
     """
 
     def __init__(
-        self, run: RunInputs, arithmetic: Arithmetic, observables: Sequence[Observable]
+        self,
+        run: RunInputs,
+        arithmetic: Arithmetic,
+        observables: Sequence[Observable],
+        shift: int,
     ) -> None:
         self.run, self.bits = run, arithmetic.bits
+        self._scales = {"lam": Fraction(1, 1 << shift)}
         self.carried = integrals_of(run.observables)
-        self.observables = {each.name: each for each in observables if each.integral}
-        self._starts = {
-            x.integral: self._evaluate(x, run.start, 0) for x in self.observables.values()
-        }
+        self.observables = {x.name: x for x in observables if x.integral or x.structure}
+        functions = (x for x in self.observables.values() if x.integral)
+        self._starts = {x.integral: self._evaluate(x, run.start, 0) for x in functions}
+
+    def parts(self, matrix: Sequence[str]) -> tuple[str, ...]:
+        """Return the kernel's numbers of which accumulated defects are made, but for the state;
+        `matrix`: those of M."""
+        carried = {x.carried for x in self.observables.values() if x.structure}
+        return (*(matrix if "m_" in carried else ()), *({"lam"} & carried))
 
     @property
     def start(self) -> dict[str, Fraction]:
@@ -55,6 +66,18 @@ class RunChanges:
         UndefinedError.
         """
         observable = self.observables[name]
+        if observable.structure:
+            with working_precision(self.bits + _GUARD_BITS):
+
+                def read(number: str) -> Ball:
+                    scale = self._scales.get(number, 1)
+                    return make_ball(scale * exact(number), scale * radius(number))
+
+                ball = self.run.accumulate(observable, done, read)
+                if not is_representable(ball):
+                    problem = f"is not defined at the state after step {done}, or at the start"
+                    raise UndefinedError("keeps", observable.structure, problem)
+                return midpoint_and_radius(ball)
         start, names = self._starts[observable.integral], self.run.coordinates
         radii = {n: radius(n) for n in names}
         point = {n: exact(n) for n in names}

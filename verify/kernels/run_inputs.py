@@ -7,7 +7,7 @@ to at most 2^−20 of the format's unit, whatever m is.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from copy import copy
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -31,6 +31,8 @@ from verify.kernels.step.computation import step_map_of
 from verify.kernels.step.integral import Integral, integral_of
 from verify.kernels.step.shared_part import source_names
 from verify.lazy_sympy import sympy
+from verify.observables.observable import Observable
+from verify.structures.accumulated import RunValues, accumulate, read_accumulated
 
 _MAX_TIME = 2**12  # for t and for the angle 2π t/P; the format has numbers below 2^15
 _SMALL_TIME = 16  # up to this t no period is taken off
@@ -79,8 +81,12 @@ def turns_of(hamiltonian: Hamiltonian, times: Times, h: Fraction) -> Turns | Non
     # Then the angle 2π t/P is also below 2^12, since 2π < 8 and P ≥ factor.
     if latest < _MAX_TIME and latest / factor < _MAX_TIME / 8:
         return None
-    steps = max(1, (_PERIODS_PER_LOOP * factor / h).__floor__())
-    return Turns(factor, power, steps, (-period_bound, period_bound + steps * h))
+    steps = max(1, (_PERIODS_PER_LOOP * factor / abs(h)).__floor__())
+    way = steps * h  # negative on the way back
+    first, last = (
+        (-period_bound, way + period_bound) if h > 0 else (way - period_bound, period_bound)
+    )
+    return Turns(factor, power, steps, (first, last))
 
 
 DEFAULT_SECTIONS = 16  # the number of notes of a run
@@ -142,6 +148,7 @@ class RunInputs:
         self.keeper, self.shares_kernel = keeper, shares_kernel
         self.aside = aside & observables
         self.start_radii: Mapping[str, Fraction] = {}  # how far the coordinates may be off
+        self.restarts = False  # whether the tangent map begins anew at each note
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -178,8 +185,14 @@ class RunInputs:
     ) -> Self:
         """Return the same run with other observables and `sections`, and without a series."""
         run = copy(self)
-        run.observables, run.points = observables, 0
+        run.observables, run.points, run.restarts = observables, 0, False
         run.sections, run.aside = sections, self.aside & observables
+        return run
+
+    def restarting(self, sections: int) -> Self:
+        """Return the same run with a tangent map that begins anew after each of the sections."""
+        run = self.with_observables(self.observables, sections)
+        run.restarts, run.aside, run.keeper = True, self.aside, NOTHING
         return run
 
     def from_box(self, box: Mapping[str, tuple[Fraction, Fraction]]) -> Self:
@@ -215,13 +228,42 @@ class RunInputs:
         return self.without(frozenset(each.name for each in carried))
 
     def size_at_start(self, name: str) -> Fraction:
-        """Return |I₀| for an observable that is the change of a function I; 0 for another."""
+        """Return |I₀| for the change of a function I, and of an accumulated defect the size of the
+        structure at the start; 0 for another observable."""
         observable = kinds.find(name)
+        if observable and observable.structure:
+            # Without the images, M = 0 and Λ = −1, nothing but the structure at the start is left.
+            images = {n: rational_ball(x) for n, x in {"lam": Fraction(-1), **self.start}.items()}
+            ball = self.accumulate(observable, 0, lambda n: images.get(n, flint.arb(0)))
+            return abs(midpoint_and_radius(ball)[0]) if ball.is_finite() else Fraction(0)
         if observable is None or not observable.integral:
             return Fraction(0)
         point = {**self.parameters, **self.in_user_names(self.start)}
         value = self.integral(observable.integral).evaluate(point, 53)
         return Fraction(0) if value is None else abs(midpoint_and_radius(value)[0])
+
+    def accumulate(self, observable: Observable, steps: int, read: Callable[[str], Ball]) -> Ball:
+        """Return an accumulated defect, at flint's present precision; not finite if undefined.
+
+        `read`: returns the ball of a number of the kernel after so many steps, by its name.
+        """
+        system, h = self._hamiltonian_of_user, self.start["h"]
+        begin = {n: rational_ball(self.start[n]) for n in self.coordinates}
+        end = {n: read(n) for n in self.coordinates}
+        if system.time_dependent:
+            begin["t"] = rational_ball(self.start["t"])
+            end["t"] = rational_ball(self.start["t"] + steps * h)
+        size = range(len(self.coordinates))
+        jacobian = (
+            [[1 + read("lam")]]
+            if observable.carried == "lam"
+            else [[read(f"m_{a}_{b}") for b in size] for a in size]
+        )
+        structure = read_accumulated(observable.structure, system)
+        boxes = self.in_user_names(begin), self.in_user_names(end)
+        return accumulate(
+            structure, RunValues(system.coordinates, *boxes, jacobian, rational_ball(h), steps)
+        )
 
     def inputs(self, kernel: Kernel, shift: int) -> dict[str, Fraction]:
         """Return h, the parameters and the scales, by their names in the kernel's source."""

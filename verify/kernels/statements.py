@@ -117,6 +117,16 @@ class Statements:
                 lines.append(f"if {product} {relation} {end}: {end} = {product}")
         return lines
 
+    def matrix(self) -> list[str]:
+        """Return the statements M ← M + K M; none if another observable has them already."""
+        lines: list[str] = []
+        for name in self.computation.matrix:
+            if not self.carries(name):
+                _, a, b = name.split("_")
+                self.carry(name, int(a == b))
+                lines += self.accumulate(name, self.value[f"d{name}"])
+        return lines
+
     def largest(self, name: str, term: str, kind: str = "wide") -> list[str]:
         """Return the statements that keep the greatest |term| in `name`, which ends in `top`."""
         if not self.carries(name):

@@ -10,8 +10,8 @@ from fractions import Fraction
 from typing import Any, Literal, Protocol, TypeAlias
 
 Ball: TypeAlias = Any  # an arb
-# Of a step: ΔJ; the determinant of J's four entries; the entries of S; M and W.
-Need: TypeAlias = Literal["delta_j", "determinant", "symplectic", "carried"]
+# Of a step: ΔJ; the determinant of J's four entries; the entries of S; M and W; M alone.
+Need: TypeAlias = Literal["delta_j", "determinant", "symplectic", "carried", "matrix"]
 ENERGY = "H"  # the name of H among the functions whose change along a run is asked for
 
 
@@ -37,6 +37,9 @@ class Loop(Protocol):
 
     def product(self) -> list[str]:
         """Return the statements of Λ, once."""
+
+    def matrix(self) -> list[str]:
+        """Return the statements of M, once."""
 
     def largest(self, name: str, term: str, kind: str = "wide") -> list[str]:
         """Return the statements that keep the greatest |term|."""
@@ -73,6 +76,7 @@ class Certificate(Protocol):
     def bound_of_form(self) -> Ball | None: ...
     def bound_of_change(self, integral: str) -> Ball | None: ...
     def bound_of_greatest_change(self, integral: str) -> Ball | None: ...
+    def bound_of_defect(self, name: str) -> Ball | None: ...
 
 
 class Map(Protocol):
@@ -105,6 +109,7 @@ class Observable:
     - `integral`: the function of the state of whose change along the run it is made: ENERGY or a
       formula; "" for other observables. `at_end`: of the change from the start to the end alone.
       `aside`: it is computed by default where it is for the system, with the digits that it has.
+    - `structure`: the structure whose accumulated defect it is, as a text; "" for others.
     - `carried`: the accumulator that it is read from, or the prefix of the names of several;
       `shift`: so many times 2^s it carries there; `begins`: its start value, which is subtracted.
       `read`: its value, from the carried numbers after so many steps.
@@ -129,6 +134,7 @@ class Observable:
     integral: str = ""
     at_end: bool = False
     aside: bool = False
+    structure: str = ""
     usual: int | None = None
     shift: int = 0
     begins: int = 0
@@ -151,7 +157,7 @@ class Observable:
     @property
     def of_any_field(self) -> bool:
         """True if it is also of equations without an H: of ΔJ, or of a formula of one's own."""
-        return self.needs in (None, "delta_j") and self.integral != ENERGY
+        return self.needs in (None, "delta_j", "matrix") and self.integral != ENERGY
 
     @property
     def of_one_run(self) -> bool:

@@ -30,6 +30,10 @@ the sum F² and a product of at least d². g is concave, so that Σ g(F_k²) ove
 most (N + 1) g(Σ F_k²/(N + 1)), and S ≤ (N Σ ‖M_k‖²)^½. Near the identity g(F²) is half of F²: where
 nothing grows the bound is the sum of the roundings, and nothing is lost to norms.
 
+Where a flow contracts volume, M is soon singular to float64. There it begins anew with 1 at each note
+of the run: the bound above holds in each section, and ‖M‖ X of its last matrix takes the place of
+‖x_0‖ in the next one (`verify.runs.restarted_certificate`).
+
 Observables: |D̂_k − D(z_k)| ≤ G ‖e_k‖ + η, with G the greatest gradient of D = 2^s ΔJ over the box
 and η its rounding; their sum bounds how log(1 + Λ) moves. The product itself is computed as
 P_{k+1} = P_k (1 + ΔĴ_k) + τ_k, so that 1 + ΔĴ_k = P_{k+1}/P_k · (1 − τ_k/P_{k+1}): the
@@ -49,9 +53,9 @@ from verify.kernels.rounding import PRECISION_BITS, Ball
 from verify.kernels.statements import integrals_of, needs_of
 from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.runs import matrix_growth
-from verify.runs.step_bounds import StepDerivatives, StepErrors, StepRounding, norm
+from verify.runs.orbit_bound import OrbitBound
+from verify.runs.step_bounds import StepDerivatives, norm
 
-_LARGEST_Q = 50  # no bound is given beyond it, as the factor e^Q would make it useless
 METHOD = "a-posteriori bound with the tangent map carried along"
 
 
@@ -68,27 +72,14 @@ def certify(
         return _Certificate(run, arithmetic, outcome, note).bounds()
 
 
-class _Certificate:
+class _Certificate(OrbitBound):
     """The quantities that bound observables; see `verify.observables.observable.Certificate`.
 
     `error` is E of the module's text, and `error_sum` a bound of Σ ‖e_k‖.
     """
 
-    rounded: StepErrors
-    derivatives: StepDerivatives
     error: Ball
     error_sum: Ball
-
-    def __init__(
-        self, run: KernelRun, arithmetic: Arithmetic, outcome: RunOutcome, note: int
-    ) -> None:
-        self.run, self.arithmetic, self.values = run, arithmetic, outcome.trail[note]
-        self.rounding = StepRounding(run, arithmetic, outcome, note)
-        self.steps, self.records = self.rounding.steps, self.rounding.records
-        self.names, self.unit = self.rounding.names, self.rounding.unit
-        self.scale = flint.arb(2) ** -outcome.shift
-
-    # -- the orbit ----------------------------------------------------------------------------
 
     def bounds(self) -> dict[str, Fraction] | None:
         """Return the bounds by name, of each value that has one; None if the orbit has none."""
@@ -116,50 +107,6 @@ class _Certificate:
         )
         volume, form = "delta_j" in needs, bool(needs & {"symplectic", "carried"})
         return StepDerivatives.from_scheme(hamiltonian, scheme, volume=volume, form=form)
-
-    @cached_property
-    def motion(self) -> matrix_growth.MatrixGrowth | None:
-        """The growth of M along the run; None if no bound follows from it."""
-        records, count, size = self.records, self.steps, len(self.names)
-        # The rounding of float64's sums, over the steps and in each sum of squares.
-        slack = 1 + flint.arb(count + size - 2) * flint.arb(2) ** -50
-        growth, highest = records["growth"] * slack, records["growth_top"] * slack
-        least = matrix_growth.least_of(size, records)
-        if not (growth.is_finite() and least > 0):
-            return None
-        # This is Q of the module's text.
-        rate = self.rounded.tangent * growth / least
-        if not rate < _LARGEST_Q:
-            return None
-        top = matrix_growth.square_of_norm(size, highest, least).sqrt()
-        mean = matrix_growth.square_of_norm(size, growth / (count + 1), least)
-        return matrix_growth.MatrixGrowth(
-            count, least, rate, top, (count * (count + 1) * mean).sqrt()
-        )
-
-    def orbit(self) -> tuple[Ball, Ball] | None:
-        """Return a bound of ‖e_k‖ for all k, and one of Σ ‖e_k‖."""
-        motion = self.motion
-        if motion is None:
-            return None
-        least, rate, top, path = motion.least, motion.rate, motion.top, motion.path
-        # `linear_bound` is X without its quadratic term. E* is twice the error that it gives, and B
-        # is taken over the box widened by E*.
-        linear_bound = rate.exp() * (self.first_error() + path / least * self.rounded.state)
-        error = (2 * top * linear_bound).abs_upper()
-        second = self.derivatives.second(self.rounding.constants(), self.rounding.box(error))
-        start = (linear_bound + rate.exp() * path / least * second * error * error / 2).abs_upper()
-        # The bootstrap: with E* in the quadratic term the bound must stay within E*.
-        if not top * start <= error:
-            return None
-        return (top * start).abs_upper(), (start * path).abs_upper()
-
-    def first_error(self) -> Ball:
-        """Return ‖e_0‖, the rounding of the initial values, and how far these may be off."""
-        start, number, to_fraction = self.run.start, self.arithmetic.number, self.arithmetic.exact
-        lost = [rational_ball(to_fraction(number(start[n])) - start[n]) for n in self.names]
-        radii = (rational_ball(x) for x in self.run.start_radii.values())
-        return norm(lost) + norm(radii)
 
     # -- the observables ----------------------------------------------------------------------
 
@@ -208,7 +155,6 @@ class _Certificate:
             return None
         size, slope = self._form
         most = matrix_growth.MOST * motion.top
-        matrix = (rounding.error_of_addition(most, values[f"d{x}"]) for x in rounding.kernel.matrix)
         entries = [x for name, x in values.items() if name.startswith("dw_")]
         largest = flint.arb(0)
         for x in entries:
@@ -219,9 +165,46 @@ class _Certificate:
             second=self.derivatives.second(*self._box),
             size=size,
             slope=slope,
-            matrix_rounding=norm(matrix),
+            matrix_rounding=self._matrix_rounding(motion.top),
             entry_rounding=self.scale * largest,
         )
+
+    def _matrix_rounding(self, top: Ball) -> Ball:
+        """Return a bound of the rounding of one step of Ĵ; `top`: max ‖M‖."""
+        rounding, most = self.rounding, matrix_growth.MOST * top
+        names = (f"d{name}" for name in rounding.kernel.matrix)
+        return norm(rounding.error_of_addition(most, self.rounded.values[n]) for n in names)
+
+    @cached_property
+    def error_of_matrix(self) -> Ball:
+        """A bound of the error of M at the end."""
+        motion, second = self.motion, self.derivatives.second(*self._box)
+        if motion is not None:
+            rounding = self._matrix_rounding(motion.top)
+            return matrix_growth.bound_matrix(motion, self.error_sum, second, rounding)
+        top, rounding = self.rounding.top, self._matrix_rounding(self.rounding.top)
+        return matrix_growth.bound_matrix_in_sections(
+            self.sections or [], top, second * self.error, rounding
+        )
+
+    def bound_of_defect(self, name: str) -> Ball:
+        """Return a bound of the error of an accumulated defect: the distance of its value from the
+        defects of all z_N, and M or Λ, that are within their bounds."""
+        (observable,), around = observables.select({name}), flint.arb(0, 1)
+        of_volume = observable.carried == "lam"
+        other = self.bound_of_product() if of_volume else self.error_of_matrix
+        if not other.is_finite():
+            return other
+
+        def read(number: str) -> Ball:
+            if number in self.names:
+                return rational_ball(self.values[number]) + around * self.error
+            scale = self.scale if of_volume else 1  # Λ was carried as 2^s Λ
+            return scale * rational_ball(self.noted[number]) + around * other
+
+        # W = MᵀΩM − Ω cancels: the balls need the digits of the run.
+        with working_precision(self.arithmetic.bits + PRECISION_BITS):
+            return self.run.accumulate(observable, self.steps, read) - self.total(name)
 
     # -- functions of the state -------------------------------------------------------------------
 
@@ -251,16 +234,34 @@ class _Certificate:
         scale, count = self.scale, self.steps
         low, high = self.records["least"], self.records["most"]
         largest, jump = abs(low).max(abs(high)), scale * self.size
+        rounding, least = self.of_product(scale, jump, largest), self.least_product
+        shift = apart = flint.arb.nan()
         # The bound takes logarithms of the factors and of the product: both must be positive.
-        if not (jump < 1 and low > -1):
-            return flint.arb.nan()
-        drift = count * self.of_product(scale, jump, largest) / (1 + low)
-        shift = (scale * self.sum_of_shifts / (1 - jump)).expm1() * drift.exp() * (1 + high)
-        # The distance of 1 + Λ from the product of the computed factors.
-        apart = drift.expm1() * (1 + high)
+        if jump < 1 and least > 0:
+            drift = count * rounding / least
+            shift = (scale * self.sum_of_shifts / (1 - jump)).expm1() * drift.exp() * (1 + high)
+            # The distance of 1 + Λ from the product of the computed factors.
+            apart = drift.expm1() * (1 + high)
+        if not shift + apart < least:
+            # Volume is almost nothing, or far from 1. Without logarithms the distance δ of the
+            # products obeys δ_{k+1} = δ_k (1 + ΔJ_k) + P_k (ΔĴ_k − ΔJ_k) + τ_k.
+            shift = scale * self.sum_of_shifts * abs(1 + low).max(1 + high)
+            apart = self.largest_factor**count * (shift + count * rounding)
         if self.arithmetic.absolute:
             return shift + scale * count * (self.size * apart + self.unit)
         return shift + apart
+
+    @property
+    def least_product(self) -> Ball:
+        """The least 1 + Λ, which may be far below the last bit of 1."""
+        return rational_ball(1 + self.noted["least"])
+
+    @property
+    def largest_factor(self) -> Ball:
+        """A bound of |1 + ΔJ| at the true states; 1 where it is less."""
+        around = flint.arb(0, 1) * (self.slope * self.error)
+        delta_j = self.scale * (self.rounded.values["dj"].interval + around)
+        return abs(1 + delta_j).abs_upper().max(flint.arb(1))
 
     def of_product(self, scale: Ball, jump: Ball, largest: Ball) -> Ball:
         """Return the rounding of one step of Λ ← Λ + ΔJ + Λ ΔJ."""

@@ -30,6 +30,7 @@ from verify.runs.estimates import (
     resolve,
     working_digits,
 )
+from verify.runs.restarted_certificate import certify_restarted
 
 _ATTEMPTS = 5
 _BALL_ATTEMPTS = 6
@@ -183,6 +184,10 @@ def certify_run(
             method = METHOD if bound_of_w is None else METHOD_OF_W
             return Measurement(Bounds(values, method, rigorous=True), name, outcome)
         arithmetic = _finer(arithmetic, missing)
+    if not kernel_run.hamiltonian.has_energy:
+        restarted = yield from certify_restarted(kernel_run, arithmetic, digits, progress)
+        if restarted is not None:
+            return Measurement(restarted[0], name, restarted[1])
     return arithmetic
 
 

@@ -28,13 +28,17 @@ Where ‖M‖ grows like N, as in integrable motion, Σ‖e_k‖ grows like N⁵
 N⁹: it takes the worst of every step for all. `verify.runs.digits_on_demand` has a nearer one.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 import flint
 
+from verify.arithmetic.arb import rational_ball
 from verify.kernels.rounding import Ball
+from verify.kernels.step.tangent_map import entries_of
 
+_LARGEST_Q = 50  # no bound is given beyond it, as the factor e^Q would make it useless
 MOST = 3  # units of max ‖M‖; the entries of Ĵ are taken to be within it
 # A bound of the rounding of an entry of MᵀΩM, and of det M in the plane, relative to ‖M‖².
 _RELATIVE_ROUNDING = flint.arb(2) ** -48
@@ -83,13 +87,102 @@ def square_of_norm(size: int, squares: Ball, least: Ball) -> Ball:
 
 @dataclass(frozen=True)
 class MatrixGrowth:
-    """The growth of a run's matrices M: N, d, Q, max ‖M‖ and S of `a_posteriori_bound`'s text."""
+    """The growth of a run's matrices M: N, d, Q, max ‖M‖ and S of `a_posteriori_bound`'s text.
+
+    `end`: a bound of the norm of the last one, if its entries are noted.
+    """
 
     steps: int
     least: Ball
     rate: Ball
     top: Ball
     path: Ball
+    end: Ball
+
+
+def growth_of(
+    size: int, records: Mapping[str, Ball], steps: int, rounding: Ball, last: Sequence[Ball]
+) -> MatrixGrowth | None:
+    """Return the growth of the `size` × `size` matrices of a run's records; None if no bound
+    follows from it. `rounding`: ρ. `last`: the entries of the last one, if they are noted."""
+    # The rounding of float64's sums, over the steps and in each sum of squares.
+    slack = 1 + flint.arb(steps + size - 2) * flint.arb(2) ** -50
+    growth, highest = records["growth"] * slack, records["growth_top"] * slack
+    least = least_of(size, records)
+    if not (growth.is_finite() and least > 0):
+        return None
+    # This is Q of `a_posteriori_bound`'s text.
+    rate = rounding * growth / least
+    if not rate < _LARGEST_Q:
+        return None
+    top = square_of_norm(size, highest, least).sqrt()
+    mean = square_of_norm(size, growth / (steps + 1), least)
+    square = sum((x * x * slack for x in last), flint.arb(0))
+    end = square_of_norm(size, square, least).sqrt() if last else top
+    return MatrixGrowth(steps, least, rate, top, (steps * (steps + 1) * mean).sqrt(), end)
+
+
+def follow(
+    sections: Iterable[MatrixGrowth], first: Ball, source: Ball, second: Ball | None = None
+) -> tuple[Ball, Ball]:
+    """Return bounds of all ‖y_k‖, and of their sum, for y_{k+1} = A_k y_k + s_k.
+
+    `sections`: the matrices of each section, which begin with 1. `first`: ‖y_0‖. All ‖s_k‖ are at
+    most `source`, and with `second`, B, at most `source` + ½ B ‖y_k‖², as long as ‖y_k‖ is at most
+    twice the bound without it. The bounds are not finite if that is not shown to hold.
+    """
+    top = total = flint.arb(0)
+    for motion in sections:
+        # With y_k = M_k x_k this bounds all ‖x_k‖ of the section.
+        share = motion.rate.exp() * motion.path / motion.least
+        growth = motion.rate.exp() * first + share * source
+        if second is not None:
+            limit = 2 * motion.top * growth
+            growth += share * second * limit * limit / 2
+            # The bootstrap: with E* in the quadratic term the bound must stay within E*.
+            if not motion.top * growth <= limit:
+                return flint.arb.nan(), flint.arb.nan()
+        top, total = top.max(motion.top * growth), total + motion.path * growth
+        first = (motion.end * growth).abs_upper()
+    return top.abs_upper(), total.abs_upper()
+
+
+def bound_product(notes: Sequence[Mapping[str, Fraction]], coordinates: Sequence[str]) -> Ball:
+    """Return about the greatest norm of the products of matrices that began anew at each note."""
+    product = top = flint.arb(1)
+    for records in notes:
+        top = top.max(product * rational_ball(records["growth_top"]).sqrt())
+        squares = (rational_ball(records[name]) ** 2 for name in entries_of(coordinates))
+        product *= sum(squares, flint.arb(0)).sqrt()
+    return top.abs_upper()
+
+
+def bound_matrix(
+    motion: MatrixGrowth, error_sum: Ball, second: Ball, matrix_rounding: Ball
+) -> Ball:
+    """Return E, a bound of the error of each Ĵ_k; not finite if there is none."""
+    # `growth` · (`displacement` + Q) is the bound Y of step 1, `error` the bound E of step 2 above.
+    top, growth = motion.top, motion.rate.exp()
+    displacement = 2 * top * top * second * error_sum / motion.least
+    if not growth * (displacement + motion.rate) <= 1:
+        return flint.arb.nan()
+    error = top * growth * (displacement + motion.path * matrix_rounding / motion.least)
+    return error if error <= top else flint.arb.nan()
+
+
+def bound_matrix_in_sections(
+    sections: Sequence[MatrixGrowth], top: Ball, slope: Ball, matrix_rounding: Ball
+) -> Ball:
+    """Return a bound of the error of each Ĵ_k where M began anew; not finite if there is none.
+
+    `top`: a bound of Ĵ's entries over MOST; `slope`: one of ‖A(ẑ_k) − A(z_k)‖.
+    """
+    # As long as ‖J_k‖ ≤ 2 `top`, J_{k+1} = A(ẑ_k) J_k + s_k with ‖s_k‖ ≤ 2 `slope` `top`. If that
+    # gives ‖J_{k+1}‖ ≤ 2 `top` again, it holds for all k. E_k obeys the same from 0, with ρ added.
+    source = 2 * slope * top
+    largest, _ = follow(sections, flint.arb(1), source)
+    error, _ = follow(sections, flint.arb(0), source + matrix_rounding)
+    return error if largest <= 2 * top and error <= top else flint.arb.nan()
 
 
 def bound_total_defect(
@@ -108,14 +201,7 @@ def bound_total_defect(
     `matrix_rounding`: a bound of the rounding of one step of Ĵ. `entry_rounding`: one of the
     rounding of one term of W and its addition.
     """
-    # `growth` · (`displacement` + Q) is the bound Y of step 1, `error` the bound E of step 2 above.
-    top, growth = motion.top, motion.rate.exp()
-    displacement = 2 * top * top * second * error_sum / motion.least
-    if not growth * (displacement + motion.rate) <= 1:
-        return flint.arb.nan()
-    error = top * growth * (displacement + motion.path * matrix_rounding / motion.least)
-    if not error <= top:
-        return flint.arb.nan()
+    top, error = motion.top, bound_matrix(motion, error_sum, second, matrix_rounding)
     terms = motion.steps * (2 * top + MOST * top) * size * error
     bound = terms + 4 * top * top * slope * error_sum + motion.steps * entry_rounding
     # Where the rounding was counted, the computed W was taken to be below 9 max ‖M‖².

@@ -20,14 +20,14 @@ from verify.observables.observable import ENERGY
 from verify.runs.estimates import BoundedValues
 from verify.schemes.maps.step_map import StepMap
 from verify.structures import Structure
+from verify.structures.accumulated import read_accumulated
 from verify.structures.first_integral import FirstIntegral
-from verify.structures.reversible import Reversible
 
 
 def prove_kept(
-    step_map: StepMap, scheme: str, names: Iterable[str], ways: Mapping[str, Reversible]
+    step_map: StepMap, scheme: str, names: Iterable[str], ways: Mapping[str, Structure]
 ) -> BoundedValues:
-    """Return the changes of functions, and the ways back, that are shown to be 0.
+    """Return the changes of functions, accumulated defects, and ways back that are shown to be 0.
 
     `ways`: the structure of each way back that is asked for.
     """
@@ -37,6 +37,9 @@ def prove_kept(
         if formula not in ("", ENERGY):
             expression = parse(formula, source="integral")
             structures[observable.name] = FirstIntegral("integral", formula, expression)
+        if observable.structure:
+            system = step_map.hamiltonian
+            structures[observable.name] = read_accumulated(observable.structure, system)
     return {
         name: (Fraction(0), Fraction(0))
         for name, structure in structures.items()

@@ -151,8 +151,9 @@ class RequestedRun:
     def _step_with_functions(self, progress: Progress | None) -> Course[Measurement]:
         """Do the steps; if the functions of the state keep them from an end, without these."""
         run, measurement = self.kernel_run, None
-        functions = {x.name: x.integral for x in kinds.select(run.observables) if x.integral}
-        demanded = {integral for name, integral in functions.items() if name not in run.aside}
+        texts = {x.name: x.integral or x.structure for x in kinds.select(run.observables)}
+        functions = {name: text for name, text in texts.items() if text}
+        demanded = {text for name, text in functions.items() if name not in run.aside}
         try:
             measurement = yield from self._step(progress)
         except UndefinedError:

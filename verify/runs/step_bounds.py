@@ -166,6 +166,9 @@ class StepRounding:
         self.shift = outcome.shift
         self.steps = int(outcome.tangents[note]["done"])
         self.records = {n: rational_ball(x) for n, x in outcome.tangents[note].items()}
+        # Of a tangent map that begins anew all notes count, else the last one.
+        last = note % len(outcome.tangents)
+        self.notes = outcome.tangents[0 if run.restarts else last : last + 1]
         self.h = rational_ball(run.start["h"])
         self.unit = flint.arb(2) ** -arithmetic.bits
         self.names = self.kernel.coordinates
@@ -231,9 +234,16 @@ class StepRounding:
 
     def matrix(self) -> dict[str, RoundedValue]:
         """Return the entries of a carried Ĵ as exact inputs, in the box of `matrix_growth`."""
-        most = matrix_growth.MOST * self.records["growth_top"].abs_upper().sqrt()
+        most = matrix_growth.MOST * self.top
         box = flint.arb(0, 1) * most * (1 + flint.arb(2) ** -10)
         return {name: RoundedValue(box, flint.arb(0)) for name in self.kernel.matrix}
+
+    @property
+    def top(self) -> Ball:
+        """A bound of the norms of M, or where it begins anew room for those of the products."""
+        if not self.run.restarts:
+            return self.records["growth_top"].abs_upper().sqrt()
+        return 2 * matrix_growth.bound_product(self.notes, self.names)
 
     def inputs(self) -> dict[str, RoundedValue]:
         """Return the state as an exact input, and h, t and the parameters with their rounding."""
@@ -244,7 +254,7 @@ class StepRounding:
             inputs[name] = RoundedValue(rational_ball(value), rational_ball(abs(lost)))
         if self.kernel.timed:
             # The clock's error is largest at the largest time.
-            latest = abs(self.run.start["t"]) + self.steps * self.run.start["h"]
+            latest = abs(self.run.start["t"]) + self.steps * abs(self.run.start["h"])
             inputs["t"] = RoundedValue(
                 self.times(), rational_ball(bound_time_error(self.arithmetic, latest))
             )

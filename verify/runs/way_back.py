@@ -1,5 +1,7 @@
 """The way back: N steps forward, turned by ρ, N steps, turned; the distance from the start.
 
+The text `-h` in place of ρ means N steps forward and N steps of −h.
+
 With rigorous bounds of both runs the bound is rigorous: the second run starts in a box that
 contains ρ of the exact state, and its certificate has the size of the box as an error of the start.
 Without them the whole way is gone in two precisions, and the bound is an estimate.
@@ -16,7 +18,7 @@ from verify import arithmetic as number_systems
 from verify import observables as kinds
 from verify.algebra.embedding import embed
 from verify.algebra.enclosure import Enclosures
-from verify.algebra.formula import parse
+from verify.algebra.formula import parse, symbol
 from verify.arithmetic.arb import bounds, is_representable, make_ball, midpoint_and_radius
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
@@ -28,7 +30,9 @@ from verify.lockstep import Course
 from verify.runs.digits_on_demand import choose, measure
 from verify.runs.estimates import BoundedValues, digits_of, working_digits
 from verify.structures.reversible import Reversible
+from verify.structures.symmetric import Symmetric
 
+BY_STEP = "-h"
 _MORE_DIGITS = 15
 _TRUE_DIGITS = 25  # of the run that a float64 run is held against
 _GUARD_BITS = 64
@@ -37,14 +41,16 @@ Bounded = tuple[Fraction, Fraction]
 
 @dataclass(frozen=True)
 class Reflection:
-    """An involution ρ of the coordinates, by formulas."""
+    """An involution ρ of the coordinates, by formulas; the identity where the steps are turned."""
 
     names: tuple[str, ...]
-    structure: Reversible
+    structure: Reversible | Symmetric
 
     @classmethod
     def read(cls, hamiltonian: Hamiltonian, text: str) -> "Reflection":
         """Return ρ from its formulas. Raises InputError for a bad one."""
+        if text == BY_STEP:
+            return cls(hamiltonian.coordinates, Symmetric("symmetric", "symmetric"))
         if hamiltonian.time_dependent:
             raise InputError("way_back", text, "is of systems that do not depend on t")
         names = hamiltonian.coordinates
@@ -56,7 +62,10 @@ class Reflection:
 
     @cached_property
     def _enclosures(self) -> Enclosures:
-        return Enclosures(*embed(self.structure.reflection, self.names))
+        images = tuple(map(symbol, self.names))
+        if isinstance(self.structure, Reversible):
+            images = self.structure.reflection
+        return Enclosures(*embed(images, self.names))
 
     def reflect(self, box: Mapping[str, Bounded], bits: int) -> BoundedValues | None:
         """Return ρ of a box, as a box; None if ρ may be undefined in it. The coordinates of a box
@@ -67,6 +76,13 @@ class Reflection:
         if balls is None or not all(map(is_representable, balls)):
             return None
         return dict(zip(box, map(midpoint_and_radius, balls), strict=True))
+
+    def return_run(self, run: KernelRun, box: BoundedValues) -> KernelRun:
+        """Return the run back from a box, which ρ has turned."""
+        back, h = run.from_box(box), run.start["h"]
+        if isinstance(self.structure, Symmetric):
+            back.start = back.start | {"h": -h, "t": run.start.get("t", 0) + run.steps * h}
+        return back
 
 
 def ways_back(hamiltonian: Hamiltonian, names: Iterable[str]) -> dict[str, Reflection]:
@@ -116,7 +132,7 @@ def _measure(
         turned = reflection.reflect({n: end[n] for n in run.coordinates}, bits) if end else None
         if turned is None:
             break
-        back = (yield from measure(run.from_box(turned), name, digits)).bounds
+        back = (yield from measure(reflection.return_run(run, turned), name, digits)).bounds
         last = reflection.reflect(back.values, bits) if back.rigorous and back.values else None
         if last is not None:
             return WayBack(_distance(run, last, bits), rigorous=True)
@@ -148,7 +164,7 @@ def _go(run: KernelRun, reflection: Reflection, arithmetic: Arithmetic) -> Cours
             return None
         if back:
             exact_box = {n: (x, Fraction(0)) for n, (x, _) in box.items()}
-            outcome = yield from run.from_box(exact_box).run_in_turn(arithmetic)
+            outcome = yield from reflection.return_run(run, exact_box).run_in_turn(arithmetic)
     return _distance(run, box, bits)[0] if box else None
 
 

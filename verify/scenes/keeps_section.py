@@ -18,15 +18,13 @@ from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
 
-from verify.algebra.expressions.formula_text import to_text
 from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.frozen import Frozen
 from verify.scenes.observables import carries
-from verify.structures import CanonicalForm, Structure
+from verify.structures import Structure
 from verify.structures.first_integral import FirstIntegral
 from verify.structures.reading import ClaimedStructure, KeepsRequest, read_structures
-from verify.structures.volume import Volume
 
 _MOST = 100
 Texts = Annotated[tuple[str, ...], Field(max_length=_MOST)]
@@ -112,17 +110,11 @@ def read_claims(
 
 def observable_of(structure: Structure, system: Hamiltonian) -> str:
     """Return the observable of runs in which the defect accumulates; "" if there is none."""
-    name = ""
-    if isinstance(structure, CanonicalForm):
-        name = structure.of_run
-    elif isinstance(structure, Volume):
-        name = "lambda" if structure.density == 1 else ""
-    elif isinstance(structure, FirstIntegral):
-        values = structure.with_values(system.value_substitutions)
-        (integral,) = values.formulas
-        is_energy = structure.name == "energy"
-        return "energy_error_max" if is_energy else f"integral_error_max: {to_text(integral)}"
-    return name if name and carries(system, name) else ""
+    values = structure.with_values(system.value_substitutions)
+    at_end, *largest = values.observables(system.coordinates)
+    # Of a function that oscillates the greatest change is shown.
+    name = largest[0] if isinstance(structure, FirstIntegral) else at_end
+    return name if carries(system, name) else ""
 
 
 def _with_keys(text: str) -> str:

@@ -4,19 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
-from verify.algebra.expressions.formula_text import to_text
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.observables import check_observables
-from verify.structures import AREA, CanonicalForm
-from verify.structures.first_integral import FirstIntegral
 from verify.structures.reading import KeepsRequest, read_structures
-from verify.structures.reversible import Reversible
-from verify.structures.structure import Structure
-from verify.structures.volume import Volume
 
 T = TypeVar("T")
-_MEASURED = "area, symplectic and volume as they are, first integrals, reversible"
 
 
 @dataclass(frozen=True)
@@ -48,32 +41,15 @@ def measured_structures(
 ) -> tuple[MeasuredStructure, ...]:
     """Return the requested structures with their observables.
 
-    That the exact flow keeps them is not asked: the run shows whether the step does. Raises
-    InputError for a structure of which a run measures nothing.
+    That the exact flow keeps them is not asked: the run shows whether the step does.
     """
     measured = []
     for claim in read_structures(request, system):
         structure = claim.structure.with_values(system.value_substitutions)
         if mistake := structure.mistake(system.coordinates):
             raise InputError("--keeps", structure.label, mistake)
-        names = _observables_of(structure)
+        names = structure.observables(system.coordinates)
         check_observables(system, names)
         defect = structure.defect_formula
         measured.append(MeasuredStructure(structure.name, structure.label, defect, *names))
     return tuple(measured)
-
-
-def _observables_of(structure: Structure) -> tuple[str, ...]:
-    if isinstance(structure, FirstIntegral):
-        if structure.name == "energy":
-            return "energy_error", "energy_error_max"
-        formula = to_text(structure.integral)
-        return f"integral_error: {formula}", f"integral_error_max: {formula}"
-    if isinstance(structure, CanonicalForm):
-        return structure.of_run, structure.over_run
-    if isinstance(structure, Volume) and structure.density == 1:
-        return AREA.of_run, AREA.over_run
-    if isinstance(structure, Reversible):
-        return (f"way_back: {', '.join(map(to_text, structure.reflection))}",)
-    problem = f"is not measured along a run, which measures {_MEASURED}"
-    raise InputError("--keeps", structure.name, problem)

@@ -7,6 +7,7 @@ from verify.algebra.formula import parse
 from verify.errors import InputError, unknown_name
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.observables.observable import ENERGY, Observable
+from verify.structures.accumulated import read_accumulated
 
 _KINDS = observables.by_name()
 _BY_PLACE = sorted((each.usual, name) for name, each in _KINDS.items() if each.usual is not None)
@@ -50,8 +51,11 @@ def carries_defect(hamiltonian: Hamiltonian) -> bool:
 
 
 def carries(hamiltonian: Hamiltonian, name: str) -> bool:
-    """Return True if the observable is carried for such an H and repeats none of the plane."""
-    observable = _KINDS[name]
+    """Return True if a run carries the observable for such an H, and it repeats none of the
+    plane."""
+    observable = _find(name)
+    if observable is None or not observable.of_one_run:
+        return False
     if hamiltonian.planar and observable.in_plane:
         return False
     is_of = hamiltonian.has_energy or observable.of_any_field
@@ -87,6 +91,8 @@ def check_observables(hamiltonian: Hamiltonian, requested: Sequence[str]) -> Non
         if observable.integral not in ("", ENERGY):
             time = ("t",) if hamiltonian.time_dependent else ()
             parse(observable.integral, (*hamiltonian.coordinates, *time), source="observable")
+        if observable.structure:
+            read_accumulated(observable.structure, hamiltonian)
 
 
 def _find(name: object) -> Observable | None:

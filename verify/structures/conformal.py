@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import symbol
 from verify.lazy_sympy import sympy
-from verify.structures.structure import StepValues, Structure, Value, is_zero
-from verify.structures.symplectic import Entries, SymplecticForm, form_defect
+from verify.structures.structure import StepValues, Structure, Value, accumulated_defect, is_zero
+from verify.structures.symplectic import Entries, SymplecticForm, form_defect, form_text
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,11 @@ class Conformal(Structure):
     def defect(self, step: StepValues) -> dict[str, Value]:
         """Return the components of the defect of one step, by their names."""
         return form_defect(step, self.entries, step.factor(self.factor))
+
+    def observables(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return the observable of a run that is its accumulated defect."""
+        form = form_text(self.entries, names)
+        return (accumulated_defect(f"factor = {to_text(self.factor)}; form = {form}"),)
 
     def mistake(self, names: Sequence[str]) -> str:
         """Return what keeps it from being a structure; "" if nothing does."""

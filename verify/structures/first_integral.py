@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from verify.algebra.expressions.formula_text import to_text
 from verify.lazy_sympy import sympy
 from verify.structures.structure import StepValues, Structure, Value
 
@@ -29,6 +30,13 @@ class FirstIntegral(Structure):
     def with_values(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> Structure:
         """Return the structure with these values in place of parameters."""
         return FirstIntegral(self.name, self.label, self.integral.xreplace(values))
+
+    def observables(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return the observables of a run of its change, at the end and the greatest."""
+        if self.name == "energy":
+            return "energy_error", "energy_error_max"
+        formula = to_text(self.integral)
+        return f"integral_error: {formula}", f"integral_error_max: {formula}"
 
     def mistake(self, names: Sequence[str]) -> str:
         """Return what keeps it from being a structure; "" if nothing does."""

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import combinations
 
+from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import symbol
 from verify.lazy_sympy import sympy
-from verify.structures.structure import StepValues, Structure, Value, is_zero
+from verify.structures.structure import StepValues, Structure, Value, accumulated_defect, is_zero
 from verify.structures.symplectic import Entries
 
 
@@ -46,6 +47,12 @@ class Poisson(Structure):
                 total = total - step.after(self.entries[a, b])
             result[f"{{{step.names[a]}, {step.names[b]}}}"] = total
         return result
+
+    def observables(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return the observable of a run that is its accumulated defect."""
+        rows = self.matrix(len(names)).tolist()
+        text = "; ".join(", ".join(map(to_text, row)) for row in rows)
+        return (accumulated_defect(f"poisson = {text}"),)
 
     def matrix(self, size: int) -> sympy.Matrix:
         """Return B as an antisymmetric matrix."""

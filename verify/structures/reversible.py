@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import symbol
 from verify.lazy_sympy import sympy
 from verify.structures.structure import StepValues, Structure, Value, is_zero
@@ -33,6 +34,10 @@ class Reversible(Structure):
     def defect(self, step: StepValues) -> dict[str, Value]:
         """Return the components of the defect of one step, by their names."""
         return dict(zip(step.names, step.return_by(self.reflection), strict=True))
+
+    def observables(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return the observable that is the way back of a run."""
+        return (f"way_back: {', '.join(map(to_text, self.reflection))}",)
 
     def mistake(self, names: Sequence[str]) -> str:
         """Return what keeps it from being a structure; "" if nothing does."""

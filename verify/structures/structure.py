@@ -66,6 +66,16 @@ class Structure(ABC):
     def defect(self, step: StepValues) -> dict[str, Value]:
         """Return the components of the defect of one step, by their names."""
 
+    def total_defect(self, steps: StepValues) -> Sequence[Value]:
+        """Return the components of the defect that has accumulated over steps, which are one map:
+        `steps` has its values."""
+        return [*self.defect(steps).values()]
+
+    @abstractmethod
+    def observables(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return the observables of a run, by their names, of what has accumulated at its end and,
+        if it is measured, of the greatest on the way; `names`: the coordinates."""
+
     def mistake(self, names: Sequence[str]) -> str:
         """Return what keeps it from being a structure on these coordinates; "" if nothing does.
 
@@ -82,6 +92,11 @@ class Structure(ABC):
     def with_values(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> Structure:
         """Return the structure with these values in place of parameters."""
         return self
+
+
+def accumulated_defect(text: str) -> str:
+    """Return the name of the observable of a text that `verify.structures.accumulated` reads."""
+    return f"accumulated_defect: {text}"
 
 
 def is_zero(x: sympy.Expr, names: Sequence[str]) -> bool | None:

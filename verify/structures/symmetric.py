@@ -1,5 +1,6 @@
 """Symmetry, that a step of −h undoes a step of h: the defect is Φ_(−h)Φ_h(z) − z."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from verify.structures.structure import StepValues, Structure, Value
@@ -17,3 +18,7 @@ class Symmetric(Structure):
     def defect(self, step: StepValues) -> dict[str, Value]:
         """Return the components of the defect of one step, by their names."""
         return dict(zip(step.names, step.return_by(None), strict=True))
+
+    def observables(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return the observable that is the way back of a run, by steps of −h."""
+        return ("way_back: -h",)

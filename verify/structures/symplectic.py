@@ -10,9 +10,10 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import combinations
 
+from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import symbol
 from verify.lazy_sympy import sympy
-from verify.structures.structure import StepValues, Structure, Value, is_zero
+from verify.structures.structure import StepValues, Structure, Value, accumulated_defect, is_zero
 
 # The coefficients of dz_a∧dz_b, a < b. In quotes, for here sympy would be imported.
 Entries = Mapping[tuple[int, int], "sympy.Expr"]
@@ -42,6 +43,10 @@ class SymplecticForm(Structure):
     def defect(self, step: StepValues) -> dict[str, Value]:
         """Return the components of the defect of one step, by their names."""
         return form_defect(step, self.entries)
+
+    def observables(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return the observable of a run that is its accumulated defect."""
+        return (accumulated_defect(f"form = {form_text(self.entries, names)}"),)
 
     def mistake(self, names: Sequence[str]) -> str:
         """Return what keeps it from being a structure; "" if nothing does."""
@@ -77,6 +82,12 @@ def form_defect(
             total = total - (share if factor is None else factor * share)
         result[f"d{step.names[a]}∧d{step.names[b]}"] = total
     return result
+
+
+def form_text(entries: Entries, names: Sequence[str]) -> str:
+    """Return a 2-form as a text that `verify.structures.reading` reads back."""
+    coefficients = {place: "" if x == 1 else f"({to_text(x)})*" for place, x in entries.items()}
+    return " + ".join(f"{x}d{names[a]}^d{names[b]}" for (a, b), x in coefficients.items())
 
 
 def canonical_entries(size: int) -> Entries:
@@ -125,6 +136,10 @@ class CanonicalForm(Structure):
     def defect(self, step: StepValues) -> dict[str, Value]:
         """Return the components of the defect of one step, by their names."""
         return form_defect(step, canonical_entries(len(step.names)))
+
+    def observables(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return the observables of a run: its accumulated defect, at the end and the greatest."""
+        return self.of_run, self.over_run
 
     def mistake(self, names: Sequence[str]) -> str:
         """Return what keeps it from being a structure; "" if nothing does."""

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
+from verify.algebra.expressions.formula_text import to_text
 from verify.lazy_sympy import sympy
-from verify.structures.structure import StepValues, Structure, Value, is_zero
+from verify.structures.structure import StepValues, Structure, Value, accumulated_defect, is_zero
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,18 @@ class Volume(Structure):
         """Return the components of the defect of one step, by their names."""
         volume = step.after(self.density) * determinant(step.jacobian)
         return {"": volume - step.before(self.density)}
+
+    def total_defect(self, steps: StepValues) -> Sequence[Value]:
+        """Return the accumulated defect relative to the density at the start, as Λ is."""
+        share = steps.after(self.density) / steps.before(self.density)
+        return [share * determinant(steps.jacobian) - steps.number(Fraction(1))]
+
+    def observables(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return the observables of a run of the accumulated defect: at its end, with the density 1
+        the greatest too."""
+        if self.density == 1:
+            return "lambda", "lambda_max"
+        return (accumulated_defect(f"density = {to_text(self.density)}"),)
 
     def mistake(self, names: Sequence[str]) -> str:
         """Return what keeps it from being a structure; "" if nothing does."""

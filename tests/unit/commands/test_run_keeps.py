@@ -55,15 +55,50 @@ def test_equations_have_their_state_by_name(capsys: pytest.CaptureFixture[str]) 
     assert found["keeps"][0]["at_end"] == found["lambda"]
 
 
+def test_forms_density_and_bracket_accumulate_and_a_wrong_one_is_seen(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    options = ["--form", "du^dv/(u*v)", "--density", "1/(u*v)", "--poisson", "0, u*v; -u*v, 0"]
+    found = json_of(here(capsys, *PREY, *START, *options, *keeps("symmetric"), "--json")[1])
+    assert found["error_kind"] == "enclosed"
+    back, form, volume, bracket = found["keeps"]
+    assert [x["structure"] for x in (back, form, volume, bracket)] == [
+        "symmetric", "symplectic", "volume", "poisson"]  # fmt: skip
+    # In the plane they are one number, in units of 1/(u v), 1, and u v at the start.
+    for x, size in ((form, Fraction("0.4")), (volume, 1)):
+        assert 0 < abs(Fraction(x["at_end"])) < Fraction(1, 10**4)
+        off = abs(Fraction(x["at_end"]) - size * Fraction(volume["at_end"]))
+        assert off < Fraction(1, 10**14)
+    assert Fraction(back["at_end"]) < Fraction(1, 1000)
+    wrong = json_of(here(capsys, *PREY, *START, "--form", "du^dv", "--json")[1])["keeps"]
+    assert abs(Fraction(wrong[0]["at_end"])) > Fraction(1, 20)
+
+
+def test_a_bracket_has_its_casimirs_beside_it(capsys: pytest.CaptureFixture[str]) -> None:
+    body = ["run", "--field", "x_dot = -y*z/6; y_dot = z*x/3; z_dot = -x*y/6", "--scheme", "rk4",
+            "--start", "x=1,y=1/2,z=-3/4", "--step-size", "0.1", "--steps", "20",
+            "--poisson", "0, z, -y; -z, 0, x; y, -x, 0"]  # fmt: skip
+    casimir = ["--casimir", "x**2 + y**2 + z**2"]
+    bracket, length = json_of(here(capsys, *body, *casimir, "--json")[1])["keeps"]
+    assert (bracket["largest"], length["structure"]) == (None, "casimir")
+    assert 0 < abs(Fraction(length["largest"])) < Fraction(1, 10**6)
+    _, out, _ = here(capsys, *body)
+    lines = out.splitlines()
+    assert lines[lines.index("the Poisson structure") + 1].startswith("  at end")
+
+
 @pytest.mark.parametrize(
     "words",
     [
         [*TWO, "lie2", *keeps("area")],
         [*TWO, "lie2", *keeps("q3")],
-        [*TWO, "lie2", *keeps("symmetric")],
+        [*TWO, "lie2", *keeps("conformal")],
+        [*TWO, "lie2", *keeps("poisson")],
+        [*TWO, "lie2", "--poisson", "0, 1; -1, 0"],
         [*TWO, "lie2", "--reverses", "p1, p2"],
         [*TWO, "lie2", "--reverses", "-p1, p2 + q1, q1, q2"],
-        [*TWO, "lie2", "--form", "2*dp1^dq1 + dp2^dq2"],
+        [*TWO, "lie2", "--form", "2*dp1^dq1 + q1*dp2^dq2"],
+        [*TWO, "lie2", "--form", "dp1^dq1"],
         [*TWO, "lie2", "--start", "u=1"],
         PREY,
         [*PREY, "--q", "1", "--p", "0"],
@@ -73,7 +108,11 @@ def test_equations_have_their_state_by_name(capsys: pytest.CaptureFixture[str]) 
         [*PREY, "--start", "u=1,u=2"],
         [*PREY, *START, *keeps("energy")],
         [*PREY, *START, *keeps("reversible")],
-        [*PREY, *START, "--density", "1/(u*v)"],
+        [*PREY, *START, "--density", "1/(u*w)"],
+        [*PREY, *START, "--density", "0*u"],
+        [*PREY, *START, "--factor", "exp(-h)"],
+        [*PREY, *START, "--factor", "1 - h", "--form", "du^dv"],
+        [*PREY, "--start", "u=0,v=1", "--density", "1/(u*v)"],
     ],
     ids=lambda words: " ".join(words[-2:]),
 )

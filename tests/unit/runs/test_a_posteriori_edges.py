@@ -104,14 +104,16 @@ def test_an_area_that_nearly_vanishes_or_doubles_at_every_step_is_certified(
     assert "lambda" in certified_and_contained(at, arithmetic)
 
 
-@pytest.mark.parametrize("factor", ["0", "-1/2", "-1", "5/2"])
-def test_a_factor_that_is_not_near_1_gives_no_certificate_of_the_product(factor: str) -> None:
-    at = case(FREE, area(factor), "1/3", "1/7", 1, 5)
-    kernel_run = at.kernel_run()
+@pytest.mark.parametrize("factor", ["0", "-1/2", "-1"])
+def test_a_factor_that_is_not_positive_gives_no_certificate(factor: str) -> None:
+    kernel_run = case(FREE, area(factor), "1/3", "1/7", 1, 5).kernel_run()
     made = kernel_run.run(mpfr.at_bits(60), tangent=True)
-    errors = certify(kernel_run, mpfr.at_bits(60), made) or {}
-    assert "lambda" not in errors
-    assert not errors or {"delta_j_max", "mse"} <= set(errors)
+    assert not certify(kernel_run, mpfr.at_bits(60), made)
+
+
+def test_a_factor_far_from_1_is_certified_without_its_logarithm() -> None:
+    at = case(FREE, area("5/2"), "1/3", "1/7", 1, 5)
+    assert "lambda" in certified_and_contained(at, mpfr.at_bits(60))
 
 
 @pytest.mark.parametrize("arithmetic", [WIDE, mpfr.at_bits(60)], ids=lambda a: a.name)

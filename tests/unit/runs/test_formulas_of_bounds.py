@@ -89,6 +89,7 @@ def certificate(noted: Noted) -> _Certificate:
     values["e0"] = RoundedValue(flint.arb(0), ball(noted.of_energy))
     # The first error, as two coordinates that are off by 3/5 and 4/5 of it.
     off = dict(zip(names, (Fraction(3, 5), Fraction(-4, 5)), strict=False))
+    seen = {name: of_mpf(x) for name, x in noted.seen.items()} | {"done": Fraction(noted.steps)}
     start, first = {n: Fraction(k) for k, n in enumerate(names)}, of_mpf(noted.start)
     rounded = {Fraction(k): k + first * off.get(n, Fraction(0)) for k, n in enumerate(names)}
     vars(made).update(
@@ -97,6 +98,7 @@ def certificate(noted: Noted) -> _Certificate:
             observables={"energy_error_max"},
             integral=lambda _: Energy(noted),
             start_radii={},
+            restarts=False,
             in_user_names=lambda box: box,
         ),
         arithmetic=SimpleNamespace(
@@ -111,6 +113,8 @@ def certificate(noted: Noted) -> _Certificate:
         ),
         steps=noted.steps,
         records={name: ball(x) for name, x in noted.seen.items()},
+        notes=(seen,),
+        noted=seen,
         names=names,
         unit=ball(noted.unit),
         scale=ball(noted.scale),
@@ -207,7 +211,7 @@ def test_where_the_quadratic_term_grows_beyond_twice_the_linear_one_nothing_is_c
 def test_a_form_that_may_be_larger_than_was_counted_has_no_bound() -> None:
     """Y > 1, E > max ‖M‖, and an error of W of more than 3 max ‖M‖², each alone."""
     zero, one = flint.arb(0), flint.arb(1)
-    motion = matrix_growth.MatrixGrowth(steps=10, least=one, rate=zero, top=one, path=one)
+    motion = matrix_growth.MatrixGrowth(steps=10, least=one, rate=zero, top=one, path=one, end=one)
     small = dict.fromkeys(
         ("error_sum", "second", "size", "slope", "matrix_rounding", "entry_rounding"), zero
     )

@@ -68,6 +68,54 @@ def test_a_reversible_scheme_comes_back_by_proof_and_in_float64_to_rounding() ->
     assert abs(rounded.values[NAME]) < Fraction(1, 10**13)
 
 
+@pytest.mark.parametrize(
+    ("arithmetic", "digits"), [("float64", 17), ("fixed", 20), ("mpfr", 30), ("ball", 12)]
+)
+def test_steps_of_minus_h_lead_back_within_the_bound(arithmetic: str, digits: int) -> None:
+    with mpmath.workdps(60):
+        h, start = mpmath.mpf(1) / 10, (mpmath.mpf("0.25"), mpmath.mpf(1))
+        p, q = start
+        for size in (h, -h):
+            for _ in range(40):
+                p, q = taylor3(p, q, size)
+        true = mpmath.sqrt((p - start[0]) ** 2 + (q - start[1]) ** 2)
+    found = pendulum("lie3", arithmetic, digits, "way_back: -h")
+    assert found.error_kind == "enclosed"
+    value = found.values["way_back: -h"]
+    assert holds(value, true)
+    assert not holds(value, true + 3 * mpmath.mpf(value.bound))  # a planted error
+    assert not holds(value, expected() * (1 + mpmath.mpf(10) ** -3))
+
+
+def test_a_symmetric_scheme_comes_back_by_minus_h_by_proof_and_euler_does_not() -> None:
+    found = pendulum("stormer-verlet", "mpfr", 17, "way_back: -h")
+    assert (found.values["way_back: -h"].value, found.exact) == ("0", ("way_back: -h",))
+    assert pendulum("symplectic-euler", "mpfr", 17, "way_back: -h").values["way_back: -h"] > 0
+    (symmetric,) = verify.run("pendulum", "lie3", **KEYS, keeps="symmetric").keeps
+    assert symmetric.at_end is not None
+
+
+@pytest.mark.parametrize("arithmetic", ["fixed", "mpfr", "ball"])
+@pytest.mark.parametrize("t0", ["0", "5000"])
+def test_the_way_back_by_minus_h_goes_back_in_time(arithmetic: str, t0: str) -> None:
+    """p′ = cos 3t, q′ = p by lie2: each step is known, and so is the way back."""
+    driven = Hamiltonian.parse("p**2/2 - q*cos(3*t)")
+    found = run(driven, "lie2", **KEYS, t0=t0, digits=15, arithmetic=arithmetic,
+                observables=["way_back: -h"])  # fmt: skip
+    with mpmath.workdps(60):
+        first, h = mpmath.mpf(t0), mpmath.mpf(1) / 10
+        start = z = (mpmath.mpf("0.25"), mpmath.mpf(1))
+        for k, sign in [(k, 1) for k in range(40)] + [(k, -1) for k in range(40, 0, -1)]:
+            t, step = first + k * h, sign * h
+            force, slope = mpmath.cos(3 * t), -3 * mpmath.sin(3 * t)
+            p, q = z
+            z = (p + step * force + step**2 / 2 * slope, q + step * p + step**2 / 2 * force)
+        true = mpmath.sqrt(sum((a - b) ** 2 for a, b in zip(z, start, strict=True)))
+    assert found.arithmetic == arithmetic
+    assert holds(found.values["way_back: -h"], true)
+    assert not holds(found.values["way_back: -h"], true * (1 + mpmath.mpf(10) ** -9))
+
+
 def test_a_wrong_turn_does_not_come_back() -> None:
     """ρ = (−p, −q) turns the pendulum's flow round nowhere."""
     assert pendulum("stormer-verlet", "mpfr", 17, "way_back: p, q").values["way_back: p, q"] > 1

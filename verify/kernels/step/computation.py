@@ -139,6 +139,8 @@ class _Step:
             outputs["det"] = self.determinant()
         if "carried" in request.needs and self.forms:
             outputs |= self.increments_of_matrices()
+        elif "matrix" in request.needs:
+            outputs |= self.increments_of_matrix()[1]
         for k, formula in enumerate(request.integrals):
             # Written last: its parts are mostly there already, for the slopes.
             integral = integral_of(hamiltonian, formula)
@@ -178,7 +180,7 @@ class _Step:
         request, field = self.request, self.step_map.field
         plain = ProgramAlgebra(self.program, field, self.inputs, request.pipelined)
         self.points = plain.points
-        needs_of_slopes = request.needs & {"determinant", "carried"}
+        needs_of_slopes = request.needs & {"determinant", "carried", "matrix"}
         needs_slopes = request.tangent or request.slopes or needs_of_slopes
         assert self.step_map.step is not None  # noqa: S101 - the caller checks it
         if needs_slopes or not self.preserved:
@@ -231,13 +233,18 @@ class _Step:
             a, d = (program.add(program.quotient(1, 1), x) for x in (a, d))
         return program.add(program.mul(a, d), program.neg(program.mul(b, c)))
 
+    def increments_of_matrix(self) -> tuple[Matrix, dict[str, int]]:
+        """Return M, and its increments."""
+        program, indices = self.program, range(len(self.names))
+        matrix_m = [[program.input(f"m_{a}_{b}", static=False) for b in indices] for a in indices]
+        change_m = multiply(program, self.slopes, matrix_m)
+        return matrix_m, {f"dm_{a}_{b}": change_m[a][b] for a in indices for b in indices}
+
     def increments_of_matrices(self) -> dict[str, int]:
         """Return the increments of M and of W."""
         program, size = self.program, len(self.names)
         indices = range(size)
-        matrix_m = [[program.input(f"m_{a}_{b}", static=False) for b in indices] for a in indices]
-        change_m = multiply(program, self.slopes, matrix_m)
-        outputs = {f"dm_{a}_{b}": change_m[a][b] for a in indices for b in indices}
+        matrix_m, outputs = self.increments_of_matrix()
         matrix = [[program.constant(Fraction(0))] * size for _ in indices]
         for (a, b), entry in self.forms.items():
             matrix[a][b], matrix[b][a] = entry, program.neg(entry)

@@ -30,17 +30,21 @@ def names_of(coordinates: Sequence[str]) -> tuple[str, ...]:
     return (*_NOTED_SUMS, *(f"{name}_{end}" for name in coordinates for end in ("low", "high")))
 
 
+def entries_of(coordinates: Sequence[str]) -> tuple[str, ...]:
+    """Return the names of M's entries, row by row."""
+    return tuple(f"m_{row}{column}" for row in coordinates for column in coordinates)
+
+
 def initial_values(
     coordinates: Sequence[str], canonical: bool = True
 ) -> list[tuple[str, int | str]]:
     """Return (name, initial value) of the carried numbers, which are float64; the name of a
     coordinate stands for its initial value."""
-    size = len(coordinates)
-    entries = [row + column for row in coordinates for column in coordinates]
+    size, entries = len(coordinates), entries_of(coordinates)
     values: list[tuple[str, int | str]] = [
-        (f"m_{entry}", int(k % (size + 1) == 0)) for k, entry in enumerate(entries)
+        (entry, int(k % (size + 1) == 0)) for k, entry in enumerate(entries)
     ]
-    values += [(f"m_{entry}_rest", 0) for entry in entries]
+    values += [(f"{entry}_rest", 0) for entry in entries]
     values += [("growth", size), ("growth_top", size), ("det_low", 1)]
     # In the plane det M is computed directly, and MᵀΩM has one entry, det M itself.
     if size > 2 and canonical:

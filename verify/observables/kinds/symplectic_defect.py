@@ -7,14 +7,10 @@ from verify.observables.observable import Loop, Observable
 
 def _lines(loop: Loop) -> list[str]:
     """Return the statements entry by entry; all increments are computed before."""
-    lines: list[str] = []
+    lines = loop.matrix()
     for name, increment in loop.value.items():
         if name.startswith("dw_"):
             lines += loop.sum_up(name[1:], increment)
-        elif name.startswith("dm_"):
-            _, a, b = name.split("_")
-            loop.carry(name[1:], int(a == b))
-            lines += loop.accumulate(name[1:], increment)
     return lines
 
 
