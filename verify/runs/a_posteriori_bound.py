@@ -30,9 +30,9 @@ the sum F² and a product of at least d². g is concave, so that Σ g(F_k²) ove
 most (N + 1) g(Σ F_k²/(N + 1)), and S ≤ (N Σ ‖M_k‖²)^½. Near the identity g(F²) is half of F²: where
 nothing grows the bound is the sum of the roundings, and nothing is lost to norms.
 
-Where a flow contracts volume, M is soon singular to float64. There it begins anew with 1 at each note
-of the run: the bound above holds in each section, and ‖M‖ X of its last matrix takes the place of
-‖x_0‖ in the next one (`verify.runs.restarted_certificate`).
+Where a flow contracts volume, M is soon singular to float64. There it begins anew with 1 at each
+note of the run: the bound above holds in each section, and ‖M‖ X of its last matrix takes the place
+of ‖x_0‖ in the next one (`verify.runs.restarted_certificate`).
 
 Observables: |D̂_k − D(z_k)| ≤ G ‖e_k‖ + η, with G the greatest gradient of D = 2^s ΔJ over the box
 and η its rounding; their sum bounds how log(1 + Λ) moves. The product itself is computed as
