@@ -8,7 +8,7 @@ import pytest
 
 from tests.unit.scenes.test_toml_lines import HEAD, MSE, write
 from verify.claims.claims_file import ClaimsFile, load_claims
-from verify.claims.kinds.value import ValueClaim
+from verify.claims.kinds.numbers.value import ValueClaim
 from verify.claims.verdicts import prepare
 from verify.errors import InputError
 from verify.execution.execute import Store

@@ -11,7 +11,7 @@ from typing import Literal
 
 from verify.arithmetic.arb import Ball, lg, rational_ball
 from verify.claims.base_claim import Findings
-from verify.claims.kinds.run_value import RunValueClaim
+from verify.claims.kinds.numbers.run_value import RunValueClaim
 from verify.errors import NOT_GIVEN, InputError
 from verify.scenes.scene import Scene
 

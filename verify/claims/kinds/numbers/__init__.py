@@ -1,0 +1,1 @@
+"""Kinds of claims about single printed numbers."""
