@@ -61,15 +61,17 @@ class OfScheme(Frozen):
 
     @property
     def scheme_title(self) -> str:
-        """The scheme for a title: of a splitting of a field its steps, without the parts."""
+        """The scheme for a title: the one that its user gave it; else of a splitting of a field its
+        steps, without the parts."""
+        from verify.schemes import separate_title
         from verify.schemes.field_splitting import separate_parts
 
-        return separate_parts(self.scheme)[0]
+        return separate_title(self.scheme)[0] or separate_parts(self.scheme)[0]
 
     @property
     def scheme_parts(self) -> str:
-        """The parts of a splitting of a field with their equations; "" of any other scheme."""
-        return self.scheme[len(self.scheme_title) :].strip().removeprefix("with ")
+        """What a title leaves out: the user's formulas, or the parts of a splitting of a field."""
+        return self.scheme[len(self.scheme_title) :].lstrip(": ").removeprefix("with ")
 
 
 class WithProse(Frozen):

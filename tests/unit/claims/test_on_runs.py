@@ -9,8 +9,8 @@ from tests.helpers.constructed.runs import CLAIM, Given, made_findings, made_run
 from verify.claims.base_claim import Findings
 from verify.claims.kinds.bounded import BoundedClaim
 from verify.claims.kinds.growth import GrowthClaim
-from verify.claims.kinds.table import PrintedTableClaim
 from verify.claims.kinds.numbers.value import ValueClaim
+from verify.claims.kinds.table import PrintedTableClaim
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
