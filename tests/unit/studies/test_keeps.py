@@ -146,4 +146,5 @@ def test_the_observable_of_a_structure_is_one_of_the_scenes_runs(tmp_path: Path)
     }  # fmt: skip
     (plain,) = result_of(tmp_path, PREY.replace('"rk4", ', "")).keeps
     changes = "integral_error_max: -u - v + log(u) + 2*log(v)"
-    assert [x.observable for x in plain.keeps] == [changes, ""]
+    form = "accumulated_defect: form = (1/(u*v))*du^dv"
+    assert [x.observable for x in plain.keeps] == [changes, form]
