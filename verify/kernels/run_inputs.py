@@ -191,8 +191,8 @@ class RunInputs:
 
     def restarting(self, sections: int) -> Self:
         """Return the same run with a tangent map that begins anew after each of the sections."""
-        run = self.with_observables(self.observables, sections)
-        run.restarts, run.aside, run.keeper = True, self.aside, NOTHING
+        run = copy(self)
+        run.sections, run.restarts, run.keeper = sections, True, NOTHING
         return run
 
     def from_box(self, box: Mapping[str, tuple[Fraction, Fraction]]) -> Self:

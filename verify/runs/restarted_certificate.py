@@ -17,7 +17,7 @@ from verify.runs.orbit_bound import linear_error
 _SECTIONS = (16, 128, 1024, 8192)  # the more, the more a flow may contract, and the wider the bound
 _ATTEMPTS = 8
 _SPARE_DIGITS = 3
-_MOST_DIGITS = 1000
+_MOST_WORK = 10**7  # digits times steps: some seconds; or four times the first digits
 METHOD = "a-posteriori bound with tangent maps of many sections"
 
 
@@ -26,9 +26,12 @@ def certify_restarted(
 ) -> Course[tuple[Bounds, RunOutcome] | None]:
     """Return a run's values to `digits` digits with rigorous bounds, and the run; None if there are
     no such bounds."""
-    sizes = [sections for sections in _SECTIONS if sections <= kernel_run.steps]
+    # Of a series there is a note for each of its points.
+    allowed = (kernel_run.points,) if kernel_run.points else _SECTIONS
+    sizes = [sections for sections in allowed if sections <= kernel_run.steps]
+    most_digits = max(4 * digits_of(arithmetic), _MOST_WORK // kernel_run.steps)
     for _ in range(_ATTEMPTS):
-        if not sizes or digits_of(arithmetic) > _MOST_DIGITS:
+        if not sizes or digits_of(arithmetic) > most_digits:
             break
         run = kernel_run.restarting(sizes[0])
         # The first section alone mostly shows that more sections are needed.

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+import flint
 import mpmath
 import pytest
 
@@ -13,6 +14,7 @@ from verify.errors import InputError
 from verify.hamiltonians.equations import read_system
 from verify.kernels.run_changes import UndefinedError
 from verify.kernels.stepping import KernelRun
+from verify.runs.a_posteriori_bound import _Certificate, certify
 from verify.runs.requested_run import run
 from verify.scenes.results.bounded_value import Value
 
@@ -189,6 +191,33 @@ def test_it_is_within_its_bound_of_the_map_of_all_steps(
         least = mpmath.mpf(10) ** -13 if arithmetic == "float64" else 0
         assert bound <= max(least, mpmath.mpf(10) ** (1 - digits) * abs(true))
         assert not holds(value, true + 3 * bound)  # a planted error of three bounds
+
+
+@pytest.mark.parametrize(("name", "part"), [("factor", "error_of_matrix"),
+                                            ("constant", "bound_of_product")])  # fmt: skip
+def test_without_the_error_of_the_matrix_or_of_the_product_the_bound_does_not_hold(
+    monkeypatch: pytest.MonkeyPatch, name: str, part: str
+) -> None:
+    """Of a form or density that does not depend on z all of the error is theirs."""
+    constant = Case(PREY, prey, UV, "density = 2", lambda z, w, m, T: mpmath.det(m) - 1)
+    case = {"constant": constant, **CASES}[name]
+    true, arithmetic = expected(case), number_systems.get("mpfr", 15)
+    inputs = {n: Fraction(x) for n, x in case.start.items()} | {"h": H, "t": Fraction(0)}
+    text = f"accumulated_defect: {case.text}"
+    kernel_run = KernelRun(read_system(case.system), "rk4", inputs, STEPS, frozenset({text}), 0)
+    outcome = kernel_run.run(arithmetic, tangent=True)
+
+    def bound() -> Any:
+        error = (certify(kernel_run, arithmetic, outcome) or {})[text]
+        return mpmath.mpf(error.numerator) / error.denominator
+
+    with mpmath.workdps(60):
+        value = outcome.values[text]
+        error = abs(mpmath.mpf(value.numerator) / value.denominator - true)
+        assert error <= bound()
+        monkeypatch.setattr(_Certificate, part, property(lambda _: flint.arb(0))
+                            if part == "error_of_matrix" else lambda _: flint.arb(0))  # fmt: skip
+        assert error > bound()
 
 
 @pytest.mark.parametrize("arithmetic", ["float64", "mpfr"])

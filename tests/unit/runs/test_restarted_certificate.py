@@ -133,6 +133,18 @@ def test_what_is_left_at_the_end_of_a_section_counts_in_the_next(
     assert true > (certify(run, arithmetic, outcome) or {})[x]
 
 
+def test_a_series_has_its_points(monkeypatch: pytest.MonkeyPatch) -> None:
+    case = CASES["damped"]
+    keys: dict[str, Any] = {"start": case.start, "step_size": case.h, "steps": case.steps,
+                            "arithmetic": "mpfr", "digits": 15, "points": 30}  # fmt: skip
+    found = verify.run(case.text, "rk4", **keys)
+    assert found.error_method == METHOD
+    assert len(found.series) == 30
+    monkeypatch.setattr("verify.runs.digits_on_demand.certify_restarted", lambda *_: iter(()))
+    estimated = verify.run(case.text, "rk4", **keys)
+    assert (estimated.error_kind, estimated.series[:5]) == ("estimated", found.series[:5])
+
+
 def test_of_a_hamiltonian_nothing_begins_anew(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: Any) -> None:
         raise AssertionError

@@ -113,6 +113,28 @@ def test_a_series_has_the_energy_of_its_own_numbers(tmp_path: Path) -> None:
     assert float(verlet.values["energy_error_max"].value) == pytest.approx(largest, rel=1e-6)
 
 
+def test_runs_of_a_scene_accumulate_what_has_a_density_or_a_bracket(tmp_path: Path) -> None:
+    """On the circle RK4 keeps all that is a function of the radius times a form, as it commutes
+    with rotations; symplectic Euler does not."""
+    scene = """
+    hamiltonian = "p**2/2 + q**2/2"
+    schemes = ["rk4", "symplectic-euler"]
+    [keeps]
+    structures = ["symmetric"]
+    density = "1/(p**2 + q**2)"
+    poisson = "0, p**2 + q**2; -p**2 - q**2, 0"
+    """
+    result = result_of(tmp_path, scene + GRID)
+    names = {x.structure: x.observable for x in result.keeps[0].keeps}
+    assert names["symmetric"] == ""
+    kept, lost = result.runs
+    for name in (names["volume"], names["poisson"]):
+        assert name.startswith("accumulated_defect: ")
+        assert (kept.values[name].value, name in kept.exact) == ("0", True)
+        assert abs(lost.values[name].exact) > Fraction(1, 100)
+        assert lost.error_kind == "enclosed"
+
+
 def test_the_observable_of_a_structure_is_one_of_the_scenes_runs(tmp_path: Path) -> None:
     henon = 'hamiltonian = "(p1**2 + p2**2 + q1**2 + q2**2)/2 + q1**2*q2 - q2**3/3"\n'
     henon += 'schemes = ["lie2"]\nkeeps = ["energy: 3", "symplectic", "volume", "reversible"]\n'
@@ -124,5 +146,5 @@ def test_the_observable_of_a_structure_is_one_of_the_scenes_runs(tmp_path: Path)
     }  # fmt: skip
     (plain,) = result_of(tmp_path, PREY.replace('"rk4", ', "")).keeps
     changes = "integral_error_max: -u - v + log(u) + 2*log(v)"
-    accumulated = "accumulated_defect: form = (1/(u*v))*du^dv"
-    assert [x.observable for x in plain.keeps] == [changes, accumulated]
+    form = "accumulated_defect: form = (1/(u*v))*du^dv"
+    assert [x.observable for x in plain.keeps] == [changes, form]

@@ -37,7 +37,8 @@ def _panel(axes: Any, run: RunResult) -> None:
     margin = 0.08 * (greatest - least) or 1.0
     axes.set_xlim(times[0], times[-1])
     axes.set_ylim(least - margin, greatest + margin)
-    name = run.scheme if len(run.scheme) <= _MAX_LABEL else f"{run.scheme[:_MAX_LABEL]}…"
+    title = run.scheme_title
+    name = title if len(title) <= _MAX_LABEL else f"{title[:_MAX_LABEL]}…"
     axes.set_title(f"H − H₀, {name}" if len(name) < _MAX_LABEL - 6 else name)
     draw_grid(axes)
     set_scaled_ticks(axes.yaxis, least, greatest)

@@ -127,7 +127,7 @@ def _plot(runs: Sequence[RunResult], label: str, name: str) -> Plot:
 
     steps = max(point.last - point.first + 1 for run in runs for point in run.series)
     greatest = [
-        f"{known_digits(run.values['energy_error_max'])} of {run.scheme}"
+        f"{known_digits(run.values['energy_error_max'])} of {run.scheme_title}"
         for run in runs
         if "energy_error_max" in run.values
     ]
