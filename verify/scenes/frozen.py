@@ -1,5 +1,6 @@
 """The base classes of all data here: frozen models that refuse unknown keys."""
 
+from collections.abc import Iterator
 from functools import cache
 from typing import Annotated, Any, get_args
 
@@ -45,6 +46,13 @@ class Frozen(BaseModel):
 
 class Section(Frozen):
     """A section of a scene: requests in a table of its own."""
+
+    def starts(self) -> Iterator[tuple[str, Any]]:
+        """Yield the initial values of its runs, each behind its place in the section."""
+        for k, start in enumerate(getattr(self, "initial_values", None) or ()):
+            yield f"initial_values.{k}", start
+        if (start := getattr(self, "initial_value", None)) is not None:
+            yield "initial_value", start
 
 
 class OfScheme(Frozen):

@@ -210,10 +210,8 @@ class Scene(Frozen):
         for orbit_map in self.orbit_map:
             orbit_map.check_hamiltonian(hamiltonian)
         for section in self.sections():
-            starts = getattr(section, "initial_values", None) or ()
-            single = getattr(section, "initial_value", None)
-            for start in (*starts, *(() if single is None else (single,))):
-                check_initial_value(start, hamiltonian)
+            for place, start in section.starts():
+                check_initial_value(place, start, hamiltonian)
         for flow in self.flow:
             flow.point(hamiltonian)
         if self.grid is not None and self.grid.observables is not None:

@@ -213,16 +213,16 @@ def start_arguments(start: AnyStart, *, of_field: bool) -> dict[str, Any]:
     return {"start": values} if of_field else values
 
 
-def check_initial_value(start: AnyStart, system: Hamiltonian) -> None:
-    """Raise InputError unless it is of the system's coordinates."""
+def check_initial_value(place: str, start: AnyStart, system: Hamiltonian) -> None:
+    """Raise InputError, which names its place in a section, unless it is of these coordinates."""
     arguments = start_arguments(start, of_field=not system.has_energy)
     if system.has_energy and isinstance(start, NamedState):
         name = next(name for name in arguments if name not in ("q", "p"))
         missing = ", ".join(x for x in ("q", "p") if x not in arguments)
         problem = f"is one of these meant: {missing}?" if missing else "allowed: q, p"
-        raise InputError(f"initial_value: {name}", text(arguments[name]), f"unknown key; {problem}")
+        raise InputError(f"{place}.{name}", text(arguments[name]), f"unknown key; {problem}")
     try:
         start_of(system, *map(arguments.get, ("q", "p", "start")))
     except InputError as error:
-        name = "initial_value" if error.name == "start" else error.name
+        name = place if error.name == "start" else error.name
         raise type(error)(name, error.value, error.problem) from None

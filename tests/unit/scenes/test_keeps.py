@@ -71,13 +71,16 @@ BAD = {
         FIELD + 'keeps = ["symplectic"]',
         "keeps=symplectic: a system without H has no p and q; write form",
     ),
-    "start-of-a-field": (FIELD + GRID, "initial_value=q: unknown; allowed: u, v"),
+    "start-of-a-field": (FIELD + GRID, "initial_values.0=q: unknown; allowed: u, v"),
     "series-of-a-field": (FIELD + SERIES, "initial_value=q: unknown; allowed: u, v"),
     "start-without-v": (
         FIELD + GRID.replace(START, UV.replace(", v = 2", "")),
         "has no value of v",
     ),
-    "start-of-an-h": (HEAD + GRID.replace(START, UV), "initial_value: u=1: unknown key; is one of"),
+    "start-of-an-h": (
+        HEAD + GRID.replace(START, UV),
+        "initial_values.0.u=1: unknown key; is one of",
+    ),
     "separate-of-a-field": (
         FIELD + GRID.replace(START, UV) + "separate = true",
         "has no H; grid.separate takes one",

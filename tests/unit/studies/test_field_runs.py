@@ -7,8 +7,10 @@ import pytest
 
 from tests.helpers.constructed.scenes import load
 from verify.claims.verdicts import make_report
+from verify.errors import InputError
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
+from verify.exploration.sample import Sample
 from verify.pages.page import render
 from verify.runs.requested_run import run
 from verify.scenes.results.report import Report
@@ -116,3 +118,8 @@ def test_what_a_proof_gives_is_left_out_and_named_by_its_steps(tmp_path: Path) -
     assert [what for what, _ in plan.left_out] == [
         f"mine: 2 runs of {STEPS}", f"mine: series of {STEPS} at h = 0.1"
     ]  # fmt: skip
+
+
+def test_what_takes_an_h_refuses_a_scene_of_a_field_that_has_a_grid(scene: Scene) -> None:
+    with pytest.raises(InputError, match="has no H"):
+        Sample.from_scene(scene)

@@ -65,6 +65,12 @@ def test_of_equations_nothing_is_looked_at_that_their_flow_does_not_keep(tmp_pat
     assert (plan.tasks, plan.left_out[-1][1]) == ({}, "the scene has no `keeps`")
 
 
+def test_of_many_equations_volume_is_not_looked_at_by_default(tmp_path: Path) -> None:
+    rows = "; ".join(f"x{k}_dot = x{(k + 1) % 13}" for k in range(13))
+    field = f'field = "{rows}"\nschemes = ["rk4"]\n'
+    assert not plan_scenes([load(tmp_path, field)]).tasks
+
+
 def test_a_plan_of_equations_has_nothing_else(tmp_path: Path) -> None:
     plan = plan_scenes([load(tmp_path, PREY)])
     assert {type(task) for task in plan.tasks.values()} == {KeepsTask}

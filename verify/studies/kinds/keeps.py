@@ -3,7 +3,7 @@
 import time
 from typing import TYPE_CHECKING, Any, Literal
 
-from verify.errors import InputError
+from verify.algebra.formula import symbol
 from verify.execution.keeper import Keeper
 from verify.execution.plan import Plan, Results, SceneQuestion, Study, results_of_tasks, scene_name
 from verify.execution.task import SchemeTask
@@ -13,11 +13,14 @@ from verify.scenes.results.kept import KeptResult, StructureResult
 from verify.scenes.scene import Scene
 from verify.schemes import get
 from verify.structures.reading import read_structures
+from verify.structures.structure import is_zero
 
 if TYPE_CHECKING:
     from verify.proof.structures.structure_order import StructureProof
 
 _COST = 20_000_000  # of the proofs, about
+# The determinant of more takes long; then volume is for the scene to ask for.
+_MOST_COORDINATES = 12
 # What is asked of a field whose flow keeps it, where its scene says nothing.
 VOLUME = Keeps(structures=("volume",))
 
@@ -69,11 +72,13 @@ def _keeps_of(scene: Scene) -> Keeps | None:
 
 
 def _flow_keeps_volume(scene: Scene) -> bool:
-    try:
-        VOLUME.claims(scene.exact_hamiltonian())
-    except InputError:
+    """Return False if the divergence is shown not to vanish, and for too many coordinates."""
+    system = scene.exact_hamiltonian()
+    if len(system.coordinates) > _MOST_COORDINATES:
         return False
-    return True
+    pairs = zip(system.exact, system.coordinates, strict=True)
+    divergence = sum(component.diff(symbol(name)) for component, name in pairs)
+    return is_zero(divergence, (*system.coordinates, "t")) is not False
 
 
 def _task(scene: Scene, scheme: str) -> KeepsTask | None:
