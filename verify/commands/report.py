@@ -96,7 +96,8 @@ def report(
     verify report --system duffing --param delta=1 --scheme lie2 --step-size 0.01 --time 100 \\
            --q 1 --p 0 -o mine
 
-    What is finished is kept in DIR/kept; an interrupted report goes on from there.
+    What is finished is kept in DIR/kept; an interrupted report goes on from there. The exit status
+    is 1 where a structure that a scene says is kept, by its `keeps`, is refuted.
 
     `integrators` holds what other libraries claim of their integrators, order, symplecticity and
     clocks, against what is found: those of the extras peers and heavy-peers that are installed, and
