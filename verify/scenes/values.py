@@ -174,7 +174,11 @@ class NamedState(Frozen):
     @model_validator(mode="before")
     @classmethod
     def _read_table(cls, data: Any) -> Any:
-        return {"values": tuple(data.items())} if isinstance(data, dict) else data
+        if not isinstance(data, dict) or isinstance(data.get("values"), tuple):
+            return data
+        # In an order that does not depend on how the table is written.
+        pairs = sorted(data.items(), key=lambda pair: str(pair[0]))
+        return {"values": tuple((name, rational(x, str(name))) for name, x in pairs)}
 
     @model_serializer
     def _as_table(self) -> dict[str, str]:

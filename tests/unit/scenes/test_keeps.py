@@ -81,6 +81,14 @@ BAD = {
         HEAD + GRID.replace(START, UV),
         "initial_values.0.u=1: unknown key; is one of",
     ),
+    "start-no-number": (
+        FIELD + GRID.replace(START, UV.replace("1", '"a"')),
+        "grid.initial_values.0: u=a: not a finite number",
+    ),
+    "start-twice": (
+        FIELD + GRID.replace(START, UV.replace("}]", "}, { v = 2, u = 1 }]")),
+        "initial_values=2: one of them stands twice",
+    ),
     "separate-of-a-field": (
         FIELD + GRID.replace(START, UV) + "separate = true",
         "has no H; grid.separate takes one",

@@ -101,6 +101,11 @@ def test_parts_may_be_named_as_those_of_an_h_and_have_its_parameters() -> None:
     assert [(a - b).expand() for a, b in pairs] == [0, 0]
 
 
+def test_steps_without_their_parts_are_told_what_is_missing() -> None:
+    with pytest.raises(InputError, match=r"has no parts: write --split, in a scene"):
+        get("A 1/2; B 1; A 1/2")
+
+
 def test_an_h_has_no_parts_of_a_field() -> None:
     with pytest.raises(InputError, match="split=A: are parts of equations without an H"):
         get("A 1 with A: q_dot = p").step_map(read_system("p**2/2"))

@@ -25,6 +25,8 @@ USERS_OWN = (
     "p_next = p - h*q; q_next = q + h*p_next",
     "kick 1/2; drift 1; kick 1/2",
     "verlet, clock frozen",
+    "A 1/2; B 1; A 1/2 with A: x_dot = y; B: y_dot = -x",
+    "0 |; 1/2 | 1/2; | 0 1; order 2",
 )
 
 

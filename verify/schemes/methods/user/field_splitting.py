@@ -2,7 +2,7 @@
 
 Sizes are numbers, in parts of h. The parts add up to the field, and the flow of each is a
 polynomial in time; see `verify.schemes.field_splitting`. It claims consistency (order 1) and
-nothing else. This file is asked before `formulas`, whose texts have a `=` too.
+nothing else.
 """
 
 from collections.abc import Mapping
@@ -11,7 +11,8 @@ from functools import partial
 from verify.errors import InputError
 from verify.hamiltonians.equations import Equations
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.field_splitting import add_parts, separate_parts, splitting_map
+from verify.schemes.conditions.splitting_conditions import LETTERS
+from verify.schemes.field_splitting import add_parts, has_steps, separate_parts, splitting_map
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
 
@@ -22,6 +23,10 @@ def make(name: str) -> Scheme | None:
     """Return the scheme for a text with parts; None for another text. InputError for a bad one."""
     steps, parts = separate_parts(name)
     if not parts:
+        # Those of an H are kick and drift; a single step may be a mistyped name, as `lie 2`.
+        if ";" in name and has_steps(name) and name.split()[0].lower() not in LETTERS:
+            problem = "has no parts: write --split, in a scene [[split]], or A 1 with A: x_dot = …"
+            raise InputError("scheme", name, problem)
         return None
     add_parts(steps, parts)  # raises InputError
     build = partial(_build, steps, parts)

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 
 from verify.algebra.formula import parameter_name
 from verify.errors import InputError
+from verify.schemes.field_splitting import separate_parts
 from verify.schemes.scheme import Scheme
 
 _FORM = "write it as 'p_next = …; q_next = …', or as 'kick 1/2; drift 1; kick 1/2'"
@@ -23,7 +24,7 @@ def make(name: str) -> Scheme | None:
 
     Raises InputError unless each line names one value, those of the end among them.
     """
-    if "=" not in name:
+    if "=" not in name or separate_parts(name)[1]:
         return None
     parts = [part.partition("=") for part in name.split(";") if part.strip()]
     formulas = {left.strip(): right.strip() for left, _, right in parts}
