@@ -78,7 +78,7 @@ class OfScheme(Frozen):
 
     @property
     def scheme_parts(self) -> str:
-        """What a title leaves out: the user's formulas, or the parts of a splitting of a field."""
+        """The rest of its text: the formulas behind a title, or the parts of a splitting."""
         return self.scheme[len(self.scheme_title) :].lstrip(": ").removeprefix("with ")
 
 
