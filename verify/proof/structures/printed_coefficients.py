@@ -1,0 +1,83 @@
+"""A defect that no rounding of printed coefficients explains.
+
+A scheme's long decimals become variables. The coefficient of hⁿ in the defect is then a polynomial
+in these too. If an enclosure of it at some point, for all numbers within ten units of the last
+digits, excludes 0, no coefficients that the digits may stand for keep the structure up to hⁿ.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import lru_cache, partial
+
+from verify.algebra.ring import Poly, Ring
+from verify.effort import MAX_CALLS, answer_unless_long
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.printed_formulas import PrintedMap, named_maps
+from verify.proof.structures.structure_values import series_values
+from verify.schemes.conditions.splitting_conditions import Splitting
+from verify.schemes.maps import kind_of
+from verify.schemes.maps.step_map import StepMap
+from verify.schemes.printed.nearby_order import PrintedParts
+from verify.schemes.scheme import Scheme
+from verify.structures import Structure
+
+
+@lru_cache(maxsize=16)
+def power_that_remains(
+    scheme: Scheme, hamiltonian: Hamiltonian, structure: Structure, most: int
+) -> int | None:
+    """Return the least power of h, at most `most`, that the defect has for all coefficients.
+
+    They are all that the printed ones may stand for; None if there is no such power, or none is
+    found.
+    """
+    search = partial(_search, scheme, hamiltonian, structure, most)
+    try:
+        return answer_unless_long(search, None, MAX_CALLS)
+    except InputError:  # a decimal stands where the map is no series in it
+        return None
+
+
+def _search(
+    scheme: Scheme, hamiltonian: Hamiltonian, structure: Structure, most: int
+) -> int | None:
+    maps = list(_maps_of(scheme, hamiltonian))
+    defects = [
+        structure.defect(series_values(step_map, structure, most)) for step_map, _ in maps
+    ]
+
+    def remains(n: int) -> bool:
+        """Return True if hⁿ remains in every reading: the digits do not say which is meant."""
+        for (_, printed), defect in zip(maps, defects, strict=True):
+            coefficients = [(x.ring, x.coefficients[n]) for x in defect.values()]
+            if not any(_is_nonzero(printed, n, *x) for x in coefficients):
+                return False
+        return bool(maps)
+
+    return next(filter(remains, range(1, most + 1)), None)
+
+
+def _is_nonzero(printed: PrintedMap, n: int, ring: Ring, x: Poly) -> bool:
+    (numbers,) = printed.readings
+    return printed.find_nonzero(n, numbers, lambda _: (ring, [x])) is not None
+
+
+def _maps_of(scheme: Scheme, hamiltonian: Hamiltonian) -> Iterator[tuple[StepMap, PrintedMap]]:
+    """Yield the map with variables for its decimals, by each reading of these."""
+    if scheme.formulas:
+        yield from named_maps(tuple(scheme.formulas.items()), hamiltonian)
+    every_h = scheme.every_h
+    if not isinstance(every_h, Splitting):
+        return
+    timed = hamiltonian.time_dependent
+    parts = every_h.nearby_in_time if timed else every_h.nearby
+    for table in parts.tables if isinstance(parts, PrintedParts) else ():
+        kinds = (kind for kind, _ in table.parts)
+        sized = tuple(zip(kinds, table.sizes, strict=True))
+        times = dict(zip(table.judged_parts, table.entries[len(sized) :], strict=True))
+        clock = tuple(times.get(k) for k in range(len(sized))) if timed else ()
+        named = replace(every_h, raw_parts=sized, times=clock)
+        names = tuple(table.printed.units)
+        step_map = kind_of(named, scheme.name).build(named, hamiltonian, scheme.name)
+        yield step_map, PrintedMap(names, (table.printed,))
