@@ -72,7 +72,8 @@ def prove(
     that it names: ΔJ may be smaller if a parameter is 0. For an H in p1 … pn and q1 … qn the orders
     of S = JᵀΩJ − Ω, which is 0 for a symplectic map, and of det J − 1 are proved.
 
-    With --keeps, only what it names is judged: that the defect of one step is 0, or of an order.
+    With --keeps, only what it names is judged: that the defect of one step is 0, or of an order. With
+    --every-hamiltonian it is judged of every H whose flow keeps it.
 
     \b
     verify prove --system duffing --scheme lie2
@@ -82,6 +83,7 @@ def prove(
     verify prove --every-hamiltonian --degrees 2 --scheme lie4
     verify prove --every-hamiltonian --time-dependent --scheme stormer-verlet
     verify prove --system pendulum --scheme lie2 --keeps "energy: 3" --keeps reversible
+    verify prove --every-hamiltonian --degrees 2 --scheme gauss4 --keeps angular-momentum
     verify prove --field "u_dot = u*(v - 2); v_dot = v*(1 - u)" --scheme rk4 --form "du^dv/(u*v)"
     """
     options_of_every = {
@@ -94,9 +96,12 @@ def prove(
         if certificate is not None:
             raise InputError("--certificate", str(certificate), "goes without --keeps and --field")
         return _prove_structures(hamiltonian, compose_scheme(scheme, splits, hamiltonian), keeps)
-    if keeps or splits:
-        option = "--keeps" if keeps else "--split"
-        raise InputError(option, NOT_GIVEN, "goes with one system, and --split with --field")
+    if splits:
+        raise InputError("--split", NOT_GIVEN, "goes with --field")
+    if keeps:
+        if certificate is not None:
+            raise InputError("--certificate", str(certificate), "goes without --keeps and --field")
+        return _prove_structures_of_every(scheme, separable, time_dependent, degrees, keeps)
     if hamiltonian is not None:
         return _prove_one(hamiltonian, scheme, certificate)
     return _prove_every(scheme, separable, time_dependent, degrees, certificate)
@@ -126,6 +131,35 @@ def _prove_structures(
 
     def show_proof() -> None:
         show.print_head(hamiltonian, integrator.name, proof)
+        print_structures(proof.keeps)
+        click.echo(f"  the map  agrees with the exact flow {show.describe_agreement(proof)}")
+
+    return CommandAnswer(data, show_proof, failed=proof.verdict == "REFUTED")
+
+
+def _prove_structures_of_every(
+    scheme: str, separable: bool, timed: bool, degrees: int | None, keeps: "KeepsRequest"
+) -> CommandAnswer:
+    from verify.commands.shared.structure_output import print_structures, structure_json
+    from verify.proof.structures.structures_for_every_h import prove_structures_for_every_h
+
+    start_time = time.perf_counter()
+    proof = prove_structures_for_every_h(
+        scheme, keeps, separable, timed=timed, degrees=1 if degrees is None else degrees
+    )
+    seconds = f"{time.perf_counter() - start_time:.6f}"
+
+    def data() -> dict[str, Any]:
+        rows = [{**structure_json(x), "example": x.example or None} for x in proof.keeps]
+        return {
+            **pick(proof, "verdict", "reason"), "hamiltonian": proof.quantifier, "scheme": scheme,
+            **show.agreement_json(proof), "keeps": rows, "seconds": seconds,
+        }  # fmt: skip
+
+    def show_proof() -> None:
+        click.echo(f"{proof.verdict}: {proof.reason}")
+        print_line("H", proof.quantifier)
+        print_line("scheme", scheme)
         print_structures(proof.keeps)
         click.echo(f"  the map  agrees with the exact flow {show.describe_agreement(proof)}")
 

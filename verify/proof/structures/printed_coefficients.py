@@ -6,21 +6,64 @@ digits, excludes 0, no coefficients that the digits may stand for keep the struc
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 
-from verify.algebra.ring import Poly, Ring
+from verify.algebra.ring import Decision, Poly, Ring
 from verify.effort import MAX_CALLS, answer_unless_long
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.expansion import Leading
+from verify.proof.order_conditions import describe_nearby
 from verify.proof.printed_formulas import PrintedMap, named_maps
 from verify.proof.structures.structure_values import series_values
+from verify.prose import Prose, prose, read_prose
+from verify.schemes.conditions.condition import NearbyOrder
 from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.schemes.maps import kind_of
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.printed.nearby_order import PrintedParts
 from verify.schemes.scheme import Scheme
 from verify.structures import Structure
+from verify.verdict import Verdict
+
+
+_MOST_BEYOND = 4  # powers of h beyond those below which there is no term
+
+
+@dataclass(frozen=True)
+class PrintedJudgement:
+    """A verdict on exact coefficients near the printed ones, and what is seen of their defect."""
+
+    verdict: Verdict
+    reason: Prose
+    leading: Leading
+
+
+def judge_printed(
+    scheme: Scheme,
+    hamiltonian: Hamiltonian,
+    structure: Structure,
+    claimed: int | None,
+    near: NearbyOrder,
+) -> PrintedJudgement | None:
+    """Judge a claim that the printed coefficients refute, of the exact ones near them.
+
+    None if the rounding of the printed ones may be the cause. `claimed`: the claimed order of the
+    defect; None if it is claimed to vanish.
+    """
+    # A map of order r differs from the flow by O(h^(r+1)), and so does all that the flow keeps.
+    least, formula = near.order + 1, structure.defect_formula
+    if claimed is not None and claimed <= least:
+        reason = prose(read_prose(f"`{formula}` is `O(h^{least})`: "), describe_nearby(near))
+        return PrintedJudgement(near.verdict, reason, Leading(least, Decision(None)))
+    most = (claimed or least + _MOST_BEYOND) - 1
+    power = power_that_remains(scheme, hamiltonian, structure, most)
+    if power is None:
+        return None
+    term = read_prose(f"`{formula}` has a term with `h^{power}`")
+    reason = prose(term, " for all coefficients that the printed ones may stand for")
+    return PrintedJudgement(Verdict.REFUTED, reason, Leading(power, Decision(False)))
 
 
 @lru_cache(maxsize=16)

@@ -47,7 +47,8 @@ def leading_of_structure(
         leading = leading_of(step_map)  # its own fast path
         return leading.entry, leading
     if of_flow:
-        if isinstance(structure, Reversible) and commutes(scheme, structure, step_map.hamiltonian):
+        names = step_map.hamiltonian.coordinates
+        if isinstance(structure, Reversible) and commutes(scheme, structure, names):
             structure = Symmetric(structure.name, structure.label)  # it has the same defect
         if is_kept_by_coefficients(step_map, structure, scheme):
             return "", VANISHES

@@ -17,22 +17,18 @@ from verify.hamiltonians.canonical_field import CanonicalField, field_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import Leading
 from verify.proof.order_for_one_h import FIRST_ORDERS, nearby_of_scheme, telescoping_of
-from verify.proof.order_conditions import describe_nearby
 from verify.proof.plane.potential import potential_along
 from verify.proof.structures.energy_potential import energy_potential
-from verify.proof.structures.printed_coefficients import power_that_remains
+from verify.proof.structures.printed_coefficients import judge_printed
 from verify.proof.structures.structure_leading import leading_of_structure
 from verify.proof.structures.structure_theorems import flow_defect
 from verify.prose import Prose, prose, read_prose
-from verify.schemes.conditions.condition import NearbyOrder
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
 from verify.structures import AREA, SYMPLECTIC, Structure
 from verify.structures.first_integral import FirstIntegral
 from verify.structures.volume import Volume
 from verify.verdict import Verdict
-
-_MOST_BEYOND = 4  # powers of h beyond the order near printed coefficients in which a term is sought
 
 
 @dataclass(frozen=True)
@@ -41,7 +37,8 @@ class StructureProof:
 
     `claimed`: the claimed order of the defect; None if it is claimed to vanish. `first`: the
     leading coefficient of the defect, in its component `component`. `telescopes`: True if it is the
-    derivative of `potential` along the flow. `domain`: where all of it holds.
+    derivative of `potential` along the flow. `domain`: where all of it holds. `example`: in a proof
+    for every H the one of `first`.
     """
 
     structure: Structure
@@ -53,6 +50,7 @@ class StructureProof:
     telescopes: bool | None = None
     potential: str | None = None
     domain: FormulaDomain = EVERYWHERE
+    example: str = ""
 
     @property
     def order(self) -> int | None:
@@ -67,7 +65,7 @@ class StructureProof:
     @property
     def leading(self) -> str:
         """The leading coefficient as a formula; empty if there is none."""
-        return self.first.text if self.order is not None else ""
+        return self.first.text if self.order is not None and self.first.element else ""
 
 
 def check_structure(hamiltonian: Hamiltonian, structure: Structure) -> bool:
@@ -113,7 +111,13 @@ def prove_structure(
     if verdict is Verdict.REFUTED and scheme is not None:
         near = nearby_of_scheme(scheme, hamiltonian)
         if near is not None:
-            verdict, reason = _judge_printed(scheme, hamiltonian, structure, claimed, near, reason)
+            printed = of_flow and judge_printed(scheme, hamiltonian, structure, claimed, near)
+            rounded = prose(
+                reason, "; the scheme prints rounded coefficients, which may be the cause"
+            )
+            verdict, reason = Verdict.UNDECIDED, rounded
+            if printed:
+                verdict, reason, leading = printed.verdict, printed.reason, printed.leading
     proof = StructureProof(
         structure, verdict, reason, leading, component, claimed, domain=domain & leading.domain
     )
@@ -141,27 +145,6 @@ def _judge(structure: Structure, leading: Leading, claimed: int | None) -> tuple
     unknown = f"the coefficients of `{formula}` below `h^{power}` vanish"
     reason = read_prose(unknown if holds else f"{unknown}; whether all do is not decided")
     return (Verdict.PROVED if holds else Verdict.UNDECIDED), reason
-
-
-def _judge_printed(
-    scheme: Scheme,
-    hamiltonian: Hamiltonian,
-    structure: Structure,
-    claimed: int | None,
-    near: NearbyOrder,
-    reason: Prose,
-) -> tuple[Verdict, Prose]:
-    """Judge a claim that the printed coefficients refute, of the exact ones near them."""
-    if claimed is not None and claimed <= near.order + 1:
-        # A map of order r differs from the flow by O(h^(r+1)), and so does all that the flow keeps.
-        return near.verdict, prose(f"the defect is O(h^{near.order + 1}): ", describe_nearby(near))
-    most = (claimed or near.order + _MOST_BEYOND) - 1
-    power = power_that_remains(scheme, hamiltonian, structure, most)
-    if power is None:
-        cause = "; the scheme prints rounded coefficients, which may be the cause"
-        return Verdict.UNDECIDED, prose(reason, cause)
-    term = read_prose(f"`{structure.defect_formula}` has a term with `h^{power}`")
-    return Verdict.REFUTED, prose(term, " for all coefficients that the printed ones may stand for")
 
 
 # -- telescoping -----------------------------------------------------------------------------------
