@@ -72,8 +72,8 @@ def prove(
     that it names: ΔJ may be smaller if a parameter is 0. For an H in p1 … pn and q1 … qn the orders
     of S = JᵀΩJ − Ω, which is 0 for a symplectic map, and of det J − 1 are proved.
 
-    With --keeps, only what it names is judged: that the defect of one step is 0, or of an order. With
-    --every-hamiltonian it is judged of every H whose flow keeps it.
+    With --keeps, only what it names is judged: that the defect of one step is 0, or of an order;
+    with --every-hamiltonian, of every H whose flow keeps it.
 
     \b
     verify prove --system duffing --scheme lie2

@@ -126,9 +126,7 @@ def _check_length(blank: ProofForEveryH, scheme: Scheme, every_h: BySeries | ByC
 # -- by conditions on coefficients ----------------------------------------------------------------
 
 
-def conditions_of_class(
-    blank: ProofForEveryH, every_h: BySeries | ByConditions
-) -> ByConditions:
+def conditions_of_class(blank: ProofForEveryH, every_h: BySeries | ByConditions) -> ByConditions:
     """Return the conditions on coefficients, and on times if H depends on time."""
     if blank.timed or not isinstance(every_h, ByConditions):
         return conditions_for(every_h)

@@ -27,7 +27,6 @@ from verify.schemes.scheme import Scheme
 from verify.structures import Structure
 from verify.verdict import Verdict
 
-
 _MOST_BEYOND = 4  # powers of h beyond those below which there is no term
 
 
@@ -86,9 +85,7 @@ def _search(
     scheme: Scheme, hamiltonian: Hamiltonian, structure: Structure, most: int
 ) -> int | None:
     maps = list(_maps_of(scheme, hamiltonian))
-    defects = [
-        structure.defect(series_values(step_map, structure, most)) for step_map, _ in maps
-    ]
+    defects = [structure.defect(series_values(step_map, structure, most)) for step_map, _ in maps]
 
     def remains(n: int) -> bool:
         """Return True if hⁿ remains in every reading: the digits do not say which is meant."""

@@ -201,22 +201,24 @@ def _judge(
     formula = structure.defect_formula
     agrees = f"as the map agrees with the flow up to `h^{agreement.order}`"
     below = read_prose(f"`{formula}` is `O(h^{least})`, {agrees}")
-    leading = example.leading if example and near is None else Leading(least, Decision(None))
-    if order is not None and order <= least:
-        if near is None:
-            return Verdict.PROVED, below, leading
-        return near.verdict, prose(below, ": ", describe_nearby(near)), leading
+    is_below = order is not None and order <= least
     undecided = prose(below, "; whether it has a term beyond is not decided")
+    nothing_seen = Leading(least, Decision(None))
+    if near is not None and is_below:
+        return near.verdict, prose(below, ": ", describe_nearby(near)), nothing_seen
     if example is None:
-        return Verdict.UNDECIDED, undecided, leading
+        return (Verdict.PROVED if is_below else Verdict.UNDECIDED), undecided, nothing_seen
     of_example = prose(" for H = ", Formula(example.hamiltonian.formula))
     if near is not None:
         scheme = get(blank.scheme)
         printed = judge_printed(scheme, example.hamiltonian, example.structure, order, near)
         if printed is None:
-            return Verdict.UNDECIDED, undecided, leading
+            return Verdict.UNDECIDED, undecided, nothing_seen
         return printed.verdict, prose(printed.reason, ",", of_example), printed.leading
+    leading = example.leading
+    begins = prose(read_prose(f"begins with `h^{leading.power}`"), of_example)
+    if is_below:
+        return Verdict.PROVED, prose(below, "; it ", begins), leading
     if order is not None and (leading.power or 0) >= order:
         return Verdict.UNDECIDED, undecided, leading
-    begins = read_prose(f"`{formula}` begins with `h^{leading.power}`")
-    return Verdict.REFUTED, prose(begins, of_example), leading
+    return Verdict.REFUTED, prose(read_prose(f"`{formula}` "), begins), leading

@@ -3,9 +3,10 @@
 Those for one H hold (`verify.proof.structures.structure_theorems`), and of a splitting more, for
 H = T(p) + V(q) and I = pᵀDq + a·p + b·q. The flow keeps I if (Dᵀp + b)·T_p = (Dq + a)·V_q: one side
 depends on p alone and the other on q alone, so that both are a constant c. A kick of size k changes
-I by −khc, a drift by khc: if the kicks' sizes add up to the drifts', I is kept. If H depends on t, c
-may too; for I = pᵀDq it is 0 if T is smooth at p = 0, or V at q = 0. An I of p alone, at most
-quadratic, has I_p·V_q = 0 for all p and q, so that each kick keeps it, and all drifts do.
+I by −khc, a drift by khc: if the kicks' sizes add up to the drifts', I is kept. If H depends on t,
+c may too; for I = pᵀDq it is 0 if T is smooth at p = 0, or V at q = 0. If I is of p alone and
+quadratic, I_p·V_q = 0 for all p and q, so that each kick keeps it, and each drift leaves p as it
+is.
 
 If a map of order r is φ_h + h^(r+1) d + …, then Φ_(−h)Φ_h(z) = z + h^(r+1)(1 − (−1)^r) d + …, so
 that for even r the defect of symmetry begins with h^(r+2) at the least. All else that the flow
@@ -58,7 +59,7 @@ def theorem_for_every_h(
             return Theorem("the conditions on the coefficients for a symplectic map hold exactly")
     if isinstance(structure, Symmetric) and is_symmetric(every_h, blank.timed):
         return Theorem("the coefficients are those of the adjoint scheme")
-    if is_symmetric_by(blank, structure, names) and is_symmetric(every_h, blank.timed):
+    if is_symmetry_by(blank, structure, names) and is_symmetric(every_h, blank.timed):
         return Theorem("the scheme commutes with ρ, and its coefficients are those of its adjoint")
     products = products_of(structure, names)
     if isinstance(structure, CanonicalForm | Volume) or products is None:
@@ -73,20 +74,19 @@ def theorem_for_every_h(
     return _theorem_on_parts(every_h, products, half, blank.timed)
 
 
-def is_symmetric_by(blank: ProofForEveryH, structure: Structure, names: tuple[str, ...]) -> bool:
+def is_symmetry_by(blank: ProofForEveryH, structure: Structure, names: tuple[str, ...]) -> bool:
     """Return True if the structure is reversibility by a ρ with which the scheme commutes.
 
     Its defect is then that of symmetry.
     """
-    is_reversible = isinstance(structure, Reversible)
-    return is_reversible and commutes(get(blank.scheme), structure, names)
+    return isinstance(structure, Reversible) and commutes(get(blank.scheme), structure, names)
 
 
 def least_power(
     blank: ProofForEveryH, structure: Structure, names: tuple[str, ...], order: int
 ) -> int:
     """Return the power of h below which the defect of a map of that order has no term."""
-    symmetry = isinstance(structure, Symmetric) or is_symmetric_by(blank, structure, names)
+    symmetry = isinstance(structure, Symmetric) or is_symmetry_by(blank, structure, names)
     return order + 2 if symmetry and order % 2 == 0 and order else order + 1
 
 
