@@ -147,9 +147,9 @@ def prove(
             name, value = ("parameters", parameters) if system is None else ("system", system)
             raise InputError(name, value, "goes without every_hamiltonian")
         return _prove_for_every_h(scheme, request, separable, time_dependent, degrees)
-    for name, value in family.items():
-        if value:
-            raise InputError(name, value, "goes with every_hamiltonian=True")
+    for option, choice in family.items():
+        if choice:
+            raise InputError(option, choice, "goes with every_hamiltonian=True")
     if system is None:
         raise InputError("system", NOT_GIVEN, "is missing; such as prove('duffing', 'lie2')")
     if isinstance(system, StepMap):

@@ -44,25 +44,36 @@ def judge_printed(
     hamiltonian: Hamiltonian,
     structure: Structure,
     claimed: int | None,
-    near: NearbyOrder,
+    near: NearbyOrder | None,
+    leading: Leading,
 ) -> PrintedJudgement | None:
     """Judge a claim that the printed coefficients refute, of the exact ones near them.
 
     None if the rounding of the printed ones may be the cause. `claimed`: the claimed order of the
-    defect; None if it is claimed to vanish.
+    defect; None if it is claimed to vanish. `near`: the order of exact coefficients near them.
+    `leading`: the leading coefficient with the printed ones.
     """
     # A map of order r differs from the flow by O(h^(r+1)), and so does all that the flow keeps.
-    least, formula = near.order + 1, structure.defect_formula
-    if claimed is not None and claimed <= least:
+    least, formula = (near.order if near else 0) + 1, structure.defect_formula
+    if near is not None and claimed is not None and claimed <= least:
         reason = prose(read_prose(f"`{formula}` is `O(h^{least})`: "), describe_nearby(near))
         return PrintedJudgement(near.verdict, reason, Leading(least, Decision(None)))
     most = (claimed or least + _MOST_BEYOND) - 1
     power = power_that_remains(scheme, hamiltonian, structure, most)
     if power is None:
         return None
+    if power == leading.power:
+        return PrintedJudgement(
+            Verdict.REFUTED, read_prose(f"`{formula}` begins with `h^{power}`"), leading
+        )
     term = read_prose(f"`{formula}` has a term with `h^{power}`")
     reason = prose(term, " for all coefficients that the printed ones may stand for")
     return PrintedJudgement(Verdict.REFUTED, reason, Leading(power, Decision(False)))
+
+
+def prints_decimals(scheme: Scheme, hamiltonian: Hamiltonian) -> bool:
+    """Return True if some coefficients are decimals that may stand for other numbers."""
+    return next(_maps_of(scheme, hamiltonian), None) is not None
 
 
 @lru_cache(maxsize=16)

@@ -19,7 +19,7 @@ from verify.proof.expansion import Leading
 from verify.proof.order_for_one_h import FIRST_ORDERS, nearby_of_scheme, telescoping_of
 from verify.proof.plane.potential import potential_along
 from verify.proof.structures.energy_potential import energy_potential
-from verify.proof.structures.printed_coefficients import judge_printed
+from verify.proof.structures.printed_coefficients import judge_printed, prints_decimals
 from verify.proof.structures.structure_leading import leading_of_structure
 from verify.proof.structures.structure_theorems import flow_defect
 from verify.prose import Prose, prose, read_prose
@@ -108,16 +108,13 @@ def prove_structure(
     component, leading = leading_of_structure(step_map, structure, scheme, of_flow)
     leading = leading.restrict_to(domain)
     verdict, reason = _judge(structure, leading, claimed)
-    if verdict is Verdict.REFUTED and scheme is not None:
-        near = nearby_of_scheme(scheme, hamiltonian)
-        if near is not None:
-            printed = of_flow and judge_printed(scheme, hamiltonian, structure, claimed, near)
-            rounded = prose(
-                reason, "; the scheme prints rounded coefficients, which may be the cause"
-            )
-            verdict, reason = Verdict.UNDECIDED, rounded
-            if printed:
-                verdict, reason, leading = printed.verdict, printed.reason, printed.leading
+    if verdict is Verdict.REFUTED and scheme and prints_decimals(scheme, hamiltonian):
+        near = nearby_of_scheme(scheme, hamiltonian) if of_flow else None
+        printed = judge_printed(scheme, hamiltonian, structure, claimed, near, leading)
+        cause = "; the scheme prints rounded coefficients, which may be the cause"
+        verdict, reason = Verdict.UNDECIDED, prose(reason, cause)
+        if printed is not None:
+            verdict, reason, leading = printed.verdict, printed.reason, printed.leading
     proof = StructureProof(
         structure, verdict, reason, leading, component, claimed, domain=domain & leading.domain
     )

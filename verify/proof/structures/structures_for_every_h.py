@@ -56,11 +56,15 @@ class _EveryHamiltonian:
 
 @dataclass(frozen=True)
 class _Agreement:
-    """The order of the map for every H of a class; `near`: if it is that near printed decimals."""
+    """The order of the map for every H of a class; `near`: if it is that near printed decimals.
+
+    `printed`: True if coefficients are printed decimals.
+    """
 
     order: int
     decided: bool
     near: NearbyOrder | None = None
+    printed: bool = False
 
 
 def prove_structures_for_every_h(
@@ -139,15 +143,16 @@ def _agreement(blank: ProofForEveryH) -> _Agreement:
     order, wrong = agreed_order(conditions, scheme.order)
     decided = wrong is not None and wrong.holds is False
     near = nearby_order(conditions, scheme.order)
+    printed = getattr(conditions, "nearby", None) is not None
     if near is not None and near.order > order:
-        return _Agreement(near.order, False, near)
+        return _Agreement(near.order, False, near, printed)
     if blank.degrees > 1 and isinstance(conditions, TreeConditions):
         tableau = conditions.tableau
         for n in range(order, 1, -1):
             if tableau.numbers.right and holds_for_all_trees(tableau, n):
                 return _Agreement(n, decided and n == order)
         return _Agreement(min(order, 1), decided and order < 2)
-    return _Agreement(order, decided)
+    return _Agreement(order, decided, printed=printed)
 
 
 # -- one structure ---------------------------------------------------------------------------------
@@ -208,17 +213,18 @@ def _judge(
         return near.verdict, prose(below, ": ", describe_nearby(near)), nothing_seen
     if example is None:
         return (Verdict.PROVED if is_below else Verdict.UNDECIDED), undecided, nothing_seen
-    of_example = prose(" for H = ", Formula(example.hamiltonian.formula))
-    if near is not None:
-        scheme = get(blank.scheme)
-        printed = judge_printed(scheme, example.hamiltonian, example.structure, order, near)
-        if printed is None:
-            return Verdict.UNDECIDED, undecided, nothing_seen
-        return printed.verdict, prose(printed.reason, ",", of_example), printed.leading
-    leading = example.leading
+    leading, of_example = example.leading, prose(" for H = ", Formula(example.hamiltonian.formula))
     begins = prose(read_prose(f"begins with `h^{leading.power}`"), of_example)
     if is_below:
         return Verdict.PROVED, prose(below, "; it ", begins), leading
+    if agreement.printed:
+        scheme = get(blank.scheme)
+        printed = judge_printed(
+            scheme, example.hamiltonian, example.structure, order, near, leading
+        )
+        if printed is None:
+            return Verdict.UNDECIDED, undecided, nothing_seen
+        return printed.verdict, prose(printed.reason, of_example), printed.leading
     if order is not None and (leading.power or 0) >= order:
         return Verdict.UNDECIDED, undecided, leading
     return Verdict.REFUTED, prose(read_prose(f"`{formula}` "), begins), leading
