@@ -27,7 +27,8 @@ from verify.structures.first_integral import FirstIntegral
 from verify.structures.reversible import Reversible
 
 _EVEN = "p**2/2 + p**2*q + q**2/2 + q**3/3"  # not separable, and even in p
-_IN_TIME = "p**2/2 + q**2/2 + q**3/3 + t**2*q"
+_IN_TIME = "(1 + t)*p**2/2 + p**3/3 + q**2/2 + q**3/3 + t**2*q"
+_OF_LOGARITHMS = "log(p) + log(q)"  # its flow keeps p*q, and neither of its parts does
 
 
 @dataclass(frozen=True)
@@ -102,6 +103,8 @@ def _formulas(structure: Structure, degrees: int, timed: bool) -> Iterator[str]:
         rest = "".join(f" + p{k}**2/2" for k in range(1, degrees + 1) if str(k) not in bound)
         rest = rest if degrees > 1 else ""
         yield from (f"({integral})**2/2 + ({integral})**3/3{rest}", integral + rest)
+        if degrees == 1:
+            yield _OF_LOGARITHMS
         if timed:
             yield f"exp(t)*({integral}){rest}"
     formulas = [x if degrees == 1 else _in_first(x) + others for x in in_plane]
