@@ -24,7 +24,7 @@ from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
 from verify.structures import CanonicalForm, Structure
 from verify.structures.reversible import Reversible
-from verify.structures.symmetric import Symmetric
+from verify.structures.symmetric import SYMMETRIC
 
 # The last examined power of h, by the number of coordinates; and how far the defect is followed
 # beyond the scheme's order at least.
@@ -49,7 +49,7 @@ def leading_of_structure(
     if of_flow:
         names = step_map.hamiltonian.coordinates
         if isinstance(structure, Reversible) and commutes(scheme, structure, names):
-            structure = Symmetric(structure.name, structure.label)  # it has the same defect
+            return leading_of_structure(step_map, SYMMETRIC, scheme, of_flow)  # the same defect
         if is_kept_by_coefficients(step_map, structure, scheme):
             return "", VANISHES
     order = scheme.order if scheme else 1
