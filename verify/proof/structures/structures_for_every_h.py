@@ -18,7 +18,7 @@ from verify.proof.order_conditions import agreed_order, describe_nearby, nearby_
 from verify.proof.order_for_every_h import conditions_of_class
 from verify.proof.proof_for_every_h import NONE, ProofForEveryH
 from verify.proof.structures.examples_for_every_h import Example, find_example
-from verify.proof.structures.printed_coefficients import judge_printed
+from verify.proof.structures.printed_coefficients import judge_printed, prints_decimals
 from verify.proof.structures.structure_order import StructureProof
 from verify.proof.structures.structure_theorems import products_of
 from verify.proof.structures.structures_proof import StructuresProof, judge_all
@@ -56,15 +56,11 @@ class _EveryHamiltonian:
 
 @dataclass(frozen=True)
 class _Agreement:
-    """The order of the map for every H of a class; `near`: if it is that near printed decimals.
-
-    `printed`: True if coefficients are printed decimals.
-    """
+    """The order of the map for every H of a class; `near`: if it is that near printed decimals."""
 
     order: int
     decided: bool
     near: NearbyOrder | None = None
-    printed: bool = False
 
 
 def prove_structures_for_every_h(
@@ -143,16 +139,15 @@ def _agreement(blank: ProofForEveryH) -> _Agreement:
     order, wrong = agreed_order(conditions, scheme.order)
     decided = wrong is not None and wrong.holds is False
     near = nearby_order(conditions, scheme.order)
-    printed = getattr(conditions, "nearby", None) is not None
     if near is not None and near.order > order:
-        return _Agreement(near.order, False, near, printed)
+        return _Agreement(near.order, False, near)
     if blank.degrees > 1 and isinstance(conditions, TreeConditions):
         tableau = conditions.tableau
         for n in range(order, 1, -1):
             if tableau.numbers.right and holds_for_all_trees(tableau, n):
                 return _Agreement(n, decided and n == order)
         return _Agreement(min(order, 1), decided and order < 2)
-    return _Agreement(order, decided, printed=printed)
+    return _Agreement(order, decided)
 
 
 # -- one structure ---------------------------------------------------------------------------------
@@ -217,8 +212,8 @@ def _judge(
     begins = prose(read_prose(f"begins with `h^{leading.power}`"), of_example)
     if is_below:
         return Verdict.PROVED, prose(below, "; it ", begins), leading
-    if agreement.printed:
-        scheme = get(blank.scheme)
+    scheme = get(blank.scheme)
+    if prints_decimals(scheme, example.hamiltonian):
         printed = judge_printed(
             scheme, example.hamiltonian, example.structure, order, near, leading
         )

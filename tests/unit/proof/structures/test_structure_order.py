@@ -310,6 +310,10 @@ def test_rounded_coefficients_refute_nothing_exact() -> None:
     assert prove(system, f"{scheme}; order 4", asked("energy: 5")).verdict is Verdict.ENCLOSED
 
 
+GAUSS = ("0.2113248654051871 | 0.25 -0.0386751345948129; "
+         "0.7886751345948129 | 0.5386751345948129 0.25; | {b}; order 4")  # fmt: skip
+
+
 @pytest.mark.parametrize(
     ("scheme", "keeps", "verdict"),
     [
@@ -320,6 +324,12 @@ def test_rounded_coefficients_refute_nothing_exact() -> None:
         ("kick 0.50000100001; drift 1; kick 0.49999899999", "energy: 3", Verdict.REFUTED),
         ("p_next = p - 0.99999999999*h*q**3; q_next = q + h*p_next", "energy: 2", Verdict.ENCLOSED),
         ("p_next = p - 0.99999899999*h*q**3; q_next = q + h*p_next", "energy: 2", Verdict.REFUTED),
+        (GAUSS.format(b="0.5 0.5"), "energy: 5", Verdict.UNDECIDED),
+        (GAUSS.format(b="0.5 0.5"), "energy: 6", Verdict.REFUTED),
+        (GAUSS.format(b="0.5 0.5"), "symmetric", Verdict.PROVED),
+        (GAUSS.format(b="0.4 0.6"), "symmetric", Verdict.REFUTED),
+        ("0 |; 0.33333333333 | 0.33333333333; 0.66666666667 | 0 0.66666666667; | 0.25 0 0.75",
+         "energy: 4", Verdict.UNDECIDED),
         ("p_next = p - h*q**3 + 0.00000000001*h; q_next = q + 0.90000000001*h*p_next", "energy: 2",
          Verdict.REFUTED),
     ],
