@@ -25,8 +25,8 @@ from verify.proof.structures.structures_proof import StructuresProof, judge_all
 from verify.proof.structures.theorems_for_every_h import least_power, theorem_for_every_h
 from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes import get
-from verify.schemes.conditions.condition import NearbyOrder
-from verify.schemes.conditions.every_hamiltonian import TaylorSeries
+from verify.schemes.conditions.condition import ByConditions, NearbyOrder
+from verify.schemes.conditions.every_hamiltonian import BySeries, TaylorSeries
 from verify.schemes.conditions.tree_conditions import TreeConditions, holds_for_all_trees
 from verify.structures.first_integral import FirstIntegral
 from verify.structures.reading import ClaimedStructure, KeepsRequest, read_structures
@@ -86,7 +86,7 @@ def prove_structures_for_every_h(
         scheme.name, separable, Verdict.UNDECIDED, NONE, timed=timed, degrees=degrees
     )
     claims = read_for_every_h(request, degrees, timed)
-    agreement = _agreement(blank)
+    agreement = _agreement(blank, scheme.every_h)
     keeps = tuple(_prove(blank, agreement, request, k, x) for k, x in enumerate(claims))
     verdict, reason = judge_all(keeps, agreement.order)
     quantifier = f"{blank.quantifier} whose flow keeps it"
@@ -129,12 +129,11 @@ def _check(structure: Structure, names: tuple[str, ...]) -> None:
                 raise InputError("--reverses", str(x), "is not affine; allowed: a + Σ c_i z_i")
 
 
-def _agreement(blank: ProofForEveryH) -> _Agreement:
+def _agreement(blank: ProofForEveryH, every_h: BySeries | ByConditions) -> _Agreement:
     """Return the order of the map, as far as it is proved for every H of the class."""
     scheme = get(blank.scheme)
-    every_h = scheme.every_h
-    if every_h is None or isinstance(every_h, TaylorSeries):
-        return _Agreement(scheme.order, True)  # of lieη: all terms up to h^η are the flow's
+    if isinstance(every_h, TaylorSeries):
+        return _Agreement(every_h.eta, True)  # all terms up to h^η are the flow's
     conditions = conditions_of_class(blank, every_h)
     order, wrong = agreed_order(conditions, scheme.order)
     decided = wrong is not None and wrong.holds is False
