@@ -101,13 +101,13 @@ class Ring(DifferentialRing):
         """Return x as an expression, with its terms as they stand in the ring."""
         return _sum_of_terms(x, self._expressions_of_generators(x))
 
-    def expression_at_0(self, x: Poly, variable: sympy.Symbol) -> sympy.Expr:
-        """Return x at variable = 0 as an expression; nan if it is undefined there."""
+    def expression_at(self, x: Poly, values: Mapping[sympy.Symbol, sympy.Expr]) -> sympy.Expr:
+        """Return x at these values as an expression; nan if it is undefined there."""
         try:
             expressions = self._expressions_of_generators(x)
-            generators = {k: g.subs(variable, 0) for k, g in expressions.items()}
+            generators = {k: g.xreplace(values) for k, g in expressions.items()}
             if any(g.has(*undefined_values()) for g in generators.values()):
-                return self.expression(x).subs(variable, 0)
+                return self.expression(x).xreplace(values)
         except TypeError:  # sympy compared a nan inside with a number
             return sympy.nan
         return _sum_of_terms(x, generators)

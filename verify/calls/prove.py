@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Literal, overload
 
 from verify import schemes
 from verify.arithmetic.exact import whole
@@ -20,13 +20,14 @@ from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians import systems
 from verify.proof.order_for_one_h import prove as prove_map
 from verify.proof.proof_for_one_h import Proof
-from verify.scenes.keeps_section import read_claims
+from verify.scenes.keeps_section import name_keys, read_claims
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
 from verify.structures.reading import KeepsRequest
 
 if TYPE_CHECKING:
     from verify.proof.plane.modified_equation import ModifiedEquation
+    from verify.proof.proof_for_every_h import ProofForEveryH
     from verify.proof.structures.structures_proof import StructuresProof
 
 
@@ -53,8 +54,32 @@ def prove(
 ) -> StructuresProof: ...
 
 
+@overload
 def prove(
-    system: SystemLike | StepMap,
+    system: None = None,
+    scheme: SchemeLike | None = None,
+    *,
+    every_hamiltonian: Literal[True],
+    separable: bool = False,
+    time_dependent: bool = False,
+    degrees: int = 1,
+) -> ProofForEveryH: ...
+@overload
+def prove(
+    system: None = None,
+    scheme: SchemeLike | None = None,
+    *,
+    keeps: Texts,
+    reverses: str = "",
+    every_hamiltonian: Literal[True],
+    separable: bool = False,
+    time_dependent: bool = False,
+    degrees: int = 1,
+) -> StructuresProof: ...
+
+
+def prove(
+    system: SystemLike | StepMap | None = None,
     scheme: SchemeLike | None = None,
     *,
     parameters: ParametersLike = None,
@@ -65,7 +90,11 @@ def prove(
     casimirs: Texts = (),
     reverses: str = "",
     factor: str = "",
-) -> Proof | StructuresProof:
+    every_hamiltonian: bool = False,
+    separable: bool = False,
+    time_dependent: bool = False,
+    degrees: int | None = None,
+) -> Proof | StructuresProof | ProofForEveryH:
     """Prove the order in h of ΔJ = det J − 1, the order of the map, and the claims of the scheme.
 
     For an H in p1 … pn and q1 … qn, the order of S = JᵀΩJ − Ω is proved in place of that of ΔJ.
@@ -85,12 +114,16 @@ def prove(
     form, density, poisson, casimirs, reverses, factor: what refines a structure, as `verify prove`
         has it: the 2-form of symplectic, the density of volume, the bracket and its Casimirs, the
         involution of reversible, the factor of conformal.
+    every_hamiltonian: prove it for every smooth H, without a system; `separable`: for every
+        H = T(p) + V(q); `time_dependent`: for those that depend on t; `degrees`: of freedom, 1 if
+        left out. What the step keeps is judged of every H whose flow keeps it.
 
     With `keeps` it returns a StructuresProof, whose `keeps` has for each structure a `verdict` with
     its `reason`, the `order` of the defect, its `leading` coefficient as a text, and whether this
-    `telescopes`. Else it returns a Proof: `verdict` with its `reason`; `order` of ΔJ or S and its
-    `leading` coefficient, an expression; `convergence_order` of the map; `area_preserving` and
-    `symplectic`, each None if it is undecided. Raises InputError, one line, for a bad argument.
+    `telescopes`. For every H without `keeps` it returns a ProofForEveryH. Else it returns a Proof:
+    `verdict` with its `reason`; `order` of ΔJ or S and its `leading` coefficient, an expression;
+    `convergence_order` of the map; `area_preserving` and `symplectic`, each None if it is
+    undecided. Raises InputError, one line, for a bad argument.
 
     >>> proof = prove("duffing", "lie2")
     >>> str(proof.verdict), proof.order, proof.leading
@@ -101,11 +134,24 @@ def prove(
     >>> energy, area = prove("pendulum", "lie2", keeps=["energy: 3", "area"]).keeps
     >>> str(energy.verdict), energy.leading, str(area.verdict)
     ('PROVED', '-p**3*sin(q)/6', 'REFUTED')
+    >>> prove(scheme="gauss4", every_hamiltonian=True, degrees=2, keeps="angular-momentum").verdict
+    <Verdict.PROVED: 'PROVED'>
     """
     request = KeepsRequest(
         texts_from("keeps", keeps), form, density, poisson, texts_from("casimirs", casimirs),
         reverses, factor,
     )  # fmt: skip
+    family = {"separable": separable, "time_dependent": time_dependent, "degrees": degrees}
+    if every_hamiltonian:
+        if system is not None or parameters:
+            name, value = ("parameters", parameters) if system is None else ("system", system)
+            raise InputError(name, value, "goes without every_hamiltonian")
+        return _prove_for_every_h(scheme, request, separable, time_dependent, degrees)
+    for option, choice in family.items():
+        if choice:
+            raise InputError(option, choice, "goes with every_hamiltonian=True")
+    if system is None:
+        raise InputError("system", NOT_GIVEN, "is missing; such as prove('duffing', 'lie2')")
     if isinstance(system, StepMap):
         claims = None if scheme is None else scheme_from(scheme)
         if isinstance(claims, StepMap) or parameters:
@@ -131,6 +177,31 @@ def _prove(
         return prove_structures(step_map, read_claims(request, step_map.hamiltonian), scheme)
     hamiltonian_from(step_map.hamiltonian)  # raises InputError for equations without an H
     return prove_map(step_map, scheme)
+
+
+def _prove_for_every_h(
+    scheme: SchemeLike | None,
+    request: KeepsRequest,
+    separable: bool,
+    timed: bool,
+    degrees: int | None,
+) -> StructuresProof | ProofForEveryH:
+    from verify.proof.order_for_every_h import prove_for_every_h
+    from verify.proof.structures.structures_for_every_h import prove_structures_for_every_h
+
+    method = None if scheme is None else scheme_from(scheme)
+    if not isinstance(method, Scheme):
+        problem = "is of one H; every_hamiltonian=True goes with a scheme of every H, as 'lie2'"
+        raise InputError("scheme", NOT_GIVEN if scheme is None else scheme, problem)
+    count = 1 if degrees is None else whole("degrees", degrees, 1)
+    if not request:
+        return prove_for_every_h(method.name, separable, timed=timed, degrees=count)
+    try:
+        return prove_structures_for_every_h(
+            method.name, request, separable, timed=timed, degrees=count
+        )
+    except InputError as error:
+        raise name_keys(error) from None
 
 
 def modified_hamiltonian(

@@ -33,7 +33,7 @@ from verify.claims.base_claim import Claim, outside
 from verify.claims.claim_scenes import HAMILTONIAN_KEYS, HAMILTONIAN_SOURCES, NamedScenes, scene_for
 from verify.claims.kinds import models
 from verify.claims.paper_file import TABLES, PaperFile, errors_located_at
-from verify.claims.quantified_claims import QuantifiedClaim
+from verify.claims.quantified_claims import FamilyClaim
 from verify.claims.run_claims import RunKeys
 from verify.claims.statement_readings import check_repair, settle_reading
 from verify.errors import InputError, LimitError, unknown_name
@@ -180,8 +180,8 @@ def _add(file: ClaimsFile, table: Any, defaults: Mapping[str, Any], scenes: Name
     if not model.on_scene:
         _append(file, model.model_validate(table))
         return
-    if "every" in table and not issubclass(model, QuantifiedClaim):
-        quantified = [k for k, m in models().items() if issubclass(m, QuantifiedClaim)]
+    if "every" in table and not issubclass(model, FamilyClaim):
+        quantified = [k for k, m in models().items() if issubclass(m, FamilyClaim)]
         raise InputError("every", table["every"], f"a claim of kind {kind} speaks of one H; of "
                          f"every H may speak: {', '.join(quantified)}")  # fmt: skip
     keys = _with_defaults(model, table, defaults)
@@ -194,7 +194,7 @@ def _add(file: ClaimsFile, table: Any, defaults: Mapping[str, Any], scenes: Name
     if "every" in hamiltonian_keys:
         keys["every"] = hamiltonian_keys["every"]
     claim = model.model_validate(keys)
-    if isinstance(claim, QuantifiedClaim) and claim.every:
+    if isinstance(claim, FamilyClaim) and claim.every:
         for key, value in hamiltonian_keys.items():
             if key != "every":
                 raise InputError(key, value, "says which H, and `every` says every H")

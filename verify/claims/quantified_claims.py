@@ -36,40 +36,15 @@ Every = Literal[
 ]
 
 
-class QuantifiedClaim(Claim):
-    """The base of the kinds that have `every`.
-
-    `about`: the parts of a proof on which it relies; see `verify.proof.checked.proved_statement`.
-    """
-
-    about: ClassVar["AboutAll"] = frozenset()
+class FamilyClaim(Claim):
+    """The base of the kinds that have `every`."""
 
     every: Every | None = None
     """The family of H for which it is claimed, in place of one H; `in time`: H may depend on t."""
 
-    @property
-    def least_order(self) -> int:
-        """The least order of the map up to which a proof must examine it."""
-        return 0
-
     def judge(self, findings: Findings) -> ClaimResult:
-        """Judge by the proof for every H of the claim, or for the scene's H."""
-        if self.every is None:
-            return self.judge_one(findings)
-        from verify.proof.order_for_every_h import prove_for_every_h
-
-        return self.judge_every(prove_for_every_h(self.scheme, **self._proof_options))
-
-    def checked_by(self, result: ClaimResult, findings: Findings) -> Sequence[Prose]:
-        """Return the marks of the proof for every H of the claim, or for the scene's H."""
-        if self.every is None:
-            return marks_for_scene(self, findings, self.about)
-        return marks_for_every(self.scheme, self.about, **self._proof_options)
-
-    @property
-    def _proof_options(self) -> dict[str, Any]:
-        """The arguments of `prove_for_every_h` for the proof that it needs."""
-        return {"separable": self.of_separable, "timed": self.in_time, "least": self.least_order}
+        """Judge for every H of the claim, or for the scene's H."""
+        return self.judge_one(findings) if self.every is None else self.judge_family()
 
     @property
     def of_separable(self) -> bool:
@@ -86,8 +61,8 @@ class QuantifiedClaim(Claim):
         """Return the verdict for the scene's H."""
 
     @abstractmethod
-    def judge_every(self, proof: "ProofForEveryH") -> ClaimResult:
-        """Return the verdict for every H, by the proof for all of them."""
+    def judge_family(self) -> ClaimResult:
+        """Return the verdict for every H of the family."""
 
     def check_every(self) -> None:
         """Raise InputError if the scheme does not admit a claim for every such H."""
@@ -101,6 +76,41 @@ class QuantifiedClaim(Claim):
         if self.in_time and self.of_separable and not every_h.separable:
             problem = f"{self.scheme} takes more than that; say 'hamiltonian in time'"
             raise InputError("every", self.every, problem)
+
+
+class QuantifiedClaim(FamilyClaim):
+    """The base of the kinds with `every` that are judged by the orders of ΔJ and of the map.
+
+    `about`: the parts of a proof on which it relies; see `verify.proof.checked.proved_statement`.
+    """
+
+    about: ClassVar["AboutAll"] = frozenset()
+
+    @property
+    def least_order(self) -> int:
+        """The least order of the map up to which a proof must examine it."""
+        return 0
+
+    def judge_family(self) -> ClaimResult:
+        """Judge by the proof for every H of the claim."""
+        from verify.proof.order_for_every_h import prove_for_every_h
+
+        return self.judge_every(prove_for_every_h(self.scheme, **self._proof_options))
+
+    def checked_by(self, result: ClaimResult, findings: Findings) -> Sequence[Prose]:
+        """Return the marks of the proof for every H of the claim, or for the scene's H."""
+        if self.every is None:
+            return marks_for_scene(self, findings, self.about)
+        return marks_for_every(self.scheme, self.about, **self._proof_options)
+
+    @property
+    def _proof_options(self) -> dict[str, Any]:
+        """The arguments of `prove_for_every_h` for the proof that it needs."""
+        return {"separable": self.of_separable, "timed": self.in_time, "least": self.least_order}
+
+    @abstractmethod
+    def judge_every(self, proof: "ProofForEveryH") -> ClaimResult:
+        """Return the verdict for every H, by the proof for all of them."""
 
     def why_not_transferable(self) -> str:
         return "" if self.every else self.obstacle

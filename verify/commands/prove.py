@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from verify.proof.proof_for_every_h import ProofForEveryH
     from verify.proof.proof_for_one_h import Proof
     from verify.proof.special_values import SpecialValue
+    from verify.proof.structures.structures_proof import StructuresProof
     from verify.schemes.scheme import Scheme
     from verify.structures.reading import KeepsRequest
 
@@ -72,7 +73,8 @@ def prove(
     that it names: ΔJ may be smaller if a parameter is 0. For an H in p1 … pn and q1 … qn the orders
     of S = JᵀΩJ − Ω, which is 0 for a symplectic map, and of det J − 1 are proved.
 
-    With --keeps, only what it names is judged: that the defect of one step is 0, or of an order.
+    With --keeps, only what it names is judged: that the defect of one step is 0, or of an order;
+    with --every-hamiltonian, of every H whose flow keeps it.
 
     \b
     verify prove --system duffing --scheme lie2
@@ -82,6 +84,7 @@ def prove(
     verify prove --every-hamiltonian --degrees 2 --scheme lie4
     verify prove --every-hamiltonian --time-dependent --scheme stormer-verlet
     verify prove --system pendulum --scheme lie2 --keeps "energy: 3" --keeps reversible
+    verify prove --every-hamiltonian --degrees 2 --scheme gauss4 --keeps angular-momentum
     verify prove --field "u_dot = u*(v - 2); v_dot = v*(1 - u)" --scheme rk4 --form "du^dv/(u*v)"
     """
     options_of_every = {
@@ -90,13 +93,15 @@ def prove(
         "degrees": degrees,
     }
     hamiltonian = one_or_every(every_hamiltonian, options, **options_of_every)
-    if hamiltonian is not None and (keeps or hamiltonian.energy is None):
-        if certificate is not None:
-            raise InputError("--certificate", str(certificate), "goes without --keeps and --field")
+    is_field = hamiltonian is not None and hamiltonian.energy is None
+    if certificate is not None and (keeps or is_field):
+        raise InputError("--certificate", str(certificate), "goes without --keeps and --field")
+    if hamiltonian is not None and (keeps or is_field):
         return _prove_structures(hamiltonian, compose_scheme(scheme, splits, hamiltonian), keeps)
-    if keeps or splits:
-        option = "--keeps" if keeps else "--split"
-        raise InputError(option, NOT_GIVEN, "goes with one system, and --split with --field")
+    if splits:
+        raise InputError("--split", NOT_GIVEN, "goes with --field")
+    if keeps:
+        return _prove_structures_of_every(scheme, separable, time_dependent, degrees, keeps)
     if hamiltonian is not None:
         return _prove_one(hamiltonian, scheme, certificate)
     return _prove_every(scheme, separable, time_dependent, degrees, certificate)
@@ -105,7 +110,6 @@ def prove(
 def _prove_structures(
     hamiltonian: "Hamiltonian", scheme: str, keeps: "KeepsRequest"
 ) -> CommandAnswer:
-    from verify.commands.shared.structure_output import print_structures, structure_json
     from verify.proof.structures.structures_proof import prove_structures
     from verify.schemes import get
     from verify.structures.reading import KeepsRequest, read_structures
@@ -115,17 +119,47 @@ def _prove_structures(
     request = keeps or KeepsRequest(keeps=("volume",))
     claims = read_structures(request, hamiltonian)
     proof = prove_structures(integrator.step_map(hamiltonian), claims, integrator)
+    texts = {**hamiltonian.texts, "scheme": integrator.name}
+    print_head = partial(show.print_head, hamiltonian, integrator.name, proof)
+    return _answer_structures(proof, texts, print_head, start_time)
+
+
+def _prove_structures_of_every(
+    scheme: str, separable: bool, timed: bool, degrees: int | None, keeps: "KeepsRequest"
+) -> CommandAnswer:
+    from verify.proof.structures.structures_for_every_h import prove_structures_for_every_h
+
+    start_time = time.perf_counter()
+    proof = prove_structures_for_every_h(
+        scheme, keeps, separable, timed=timed, degrees=1 if degrees is None else degrees
+    )
+
+    def print_head() -> None:
+        click.echo(f"{proof.verdict}: {proof.reason}")
+        print_line("H", proof.quantifier)
+        print_line("scheme", scheme)
+
+    texts = {"hamiltonian": proof.quantifier, "scheme": scheme}
+    return _answer_structures(proof, texts, print_head, start_time)
+
+
+def _answer_structures(
+    proof: "StructuresProof",
+    texts: dict[str, Any],
+    print_head: "Callable[[], None]",
+    start_time: float,
+) -> CommandAnswer:
+    from verify.commands.shared.structure_output import print_structures, structure_json
+
     seconds = f"{time.perf_counter() - start_time:.6f}"
 
     def data() -> dict[str, Any]:
-        return {
-            **pick(proof, "verdict", "reason"), **hamiltonian.texts, "scheme": integrator.name,
-            **show.agreement_json(proof), "keeps": list(map(structure_json, proof.keeps)),
-            "seconds": seconds,
-        }  # fmt: skip
+        rows = [{**structure_json(x), "example": x.example or None} for x in proof.keeps]
+        head = {**pick(proof, "verdict", "reason"), **texts, **show.agreement_json(proof)}
+        return {**head, "keeps": rows, "seconds": seconds}
 
     def show_proof() -> None:
-        show.print_head(hamiltonian, integrator.name, proof)
+        print_head()
         print_structures(proof.keeps)
         click.echo(f"  the map  agrees with the exact flow {show.describe_agreement(proof)}")
 

@@ -150,7 +150,7 @@ class TaylorExpansion:
         while len(self._derivatives) <= n:
             self._derivatives.append(self.ring.diff(self._derivatives[-1], "h"))
         # Taylor's formula: the n-th derivative by h at h = 0, divided by n!.
-        value = self.ring.expression_at_0(self._derivatives[n], symbol("h"))
+        value = self.ring.expression_at(self._derivatives[n], {symbol("h"): sympy.S.Zero})
         try:
             check_expression(value, "map", "")
         except InputError:

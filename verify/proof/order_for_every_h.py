@@ -69,8 +69,8 @@ _MOST_ORDER = {AREA: 14, SYMPLECTIC: math.inf}  # L's terms double with each ord
 _MOST_ETA_IN_TIME = 8  # with time the terms triple with each order; lie8 takes 2 s
 # H for counterexamples: polynomials, so that all is decided, and not quadratic, as for a quadratic
 # H too many terms vanish.
-_SEPARABLE_EXAMPLES = ("p**2/2 + q**2/2 + q**3/3", "p**2/2 + p**3/3 + q**2/2 + q**4/4 + q**3/3")
-_MIXED_EXAMPLES = ("p**2/2 + q**2/2 + p*q**2 + q**3/3",)
+SEPARABLE_EXAMPLES = ("p**2/2 + q**2/2 + q**3/3", "p**2/2 + p**3/3 + q**2/2 + q**4/4 + q**3/3")
+MIXED_EXAMPLES = ("p**2/2 + q**2/2 + p*q**2 + q**3/3",)
 
 
 def prove_for_every_h(
@@ -126,7 +126,7 @@ def _check_length(blank: ProofForEveryH, scheme: Scheme, every_h: BySeries | ByC
 # -- by conditions on coefficients ----------------------------------------------------------------
 
 
-def _conditions(blank: ProofForEveryH, every_h: BySeries | ByConditions) -> ByConditions:
+def conditions_of_class(blank: ProofForEveryH, every_h: BySeries | ByConditions) -> ByConditions:
     """Return the conditions on coefficients, and on times if H depends on time."""
     if blank.timed or not isinstance(every_h, ByConditions):
         return conditions_for(every_h)
@@ -143,7 +143,7 @@ def _prove_by_coefficients(
     A scheme without a series may be refuted by a counterexample: an H, always without t, for which
     det J is not 1.
     """
-    conditions = _conditions(blank, every_h)
+    conditions = conditions_of_class(blank, every_h)
     proof = prove_by_conditions(scheme, conditions, least)
     proof = replace(proof, separable=blank.separable, timed=blank.timed)
     agreed = proof.convergence_order or 0
@@ -178,7 +178,7 @@ class RefutingHamiltonian(NamedTuple):
 
 def counterexample(scheme: Scheme, separable: bool) -> RefutingHamiltonian | None:
     """Find an H with ΔJ ≠ 0; None if none is found."""
-    for text in (*_SEPARABLE_EXAMPLES, *(() if separable else _MIXED_EXAMPLES)):
+    for text in (*SEPARABLE_EXAMPLES, *(() if separable else MIXED_EXAMPLES)):
         try:
             step_map = scheme.step_map(Hamiltonian.parse(text))
         except InputError:

@@ -53,9 +53,8 @@ def not_zero_for(ring: Ring, x: Poly, what: str) -> FormulaDomain:
             return FormulaDomain.from_requirements(
                 [*requirements, *_not_all_zero([ring.expression(r) for r in rests])]
             )
-    expression = ring.expression(x)
     # If x at some point is a product of the common factors, these are the only condition.
-    if any(_is_product_at(ring, expression, factors, point) for point in _points(ring, x, factors)):
+    if any(_is_product_at(ring, x, factors, point) for point in _points(ring, x, factors)):
         return FormulaDomain.from_requirements(requirements)
     names = [name for name in parameters if ring.depends(x, name)] or parameters
     return FormulaDomain.from_requirements(
@@ -139,11 +138,11 @@ def _points(ring: Ring, x: Poly, factors: Sequence[Poly]) -> Iterator[_Point]:
                 yield from ((value, n) if name == "p" else (n, value) for n in simple)
 
 
-def _is_product_at(ring: Ring, x: sympy.Expr, factors: Sequence[Poly], point: _Point) -> bool:
+def _is_product_at(ring: Ring, x: Poly, factors: Sequence[Poly], point: _Point) -> bool:
     """Return True if x at the point is a product of some of the factors and a nonzero number."""
     state = (*_state(ring), "t")
     values = dict(zip(map(symbol, state), (*point, sympy.S.One), strict=True))
-    value = x.xreplace(values)
+    value = ring.expression_at(x, values)
     names = [name for name in ring.variables if name not in state]
     try:
         constants, (remaining, *divisors) = embed([value, *map(ring.expression, factors)], names)

@@ -10,7 +10,7 @@ point, an enclosure of the difference for all numbers within ten units of the la
 """
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache, partial
@@ -33,6 +33,7 @@ from verify.proof.expansion import AnySeries, series_of
 from verify.prose import Formula, Prose, prose
 from verify.schemes.conditions.condition import Condition, NearbyOrder
 from verify.schemes.maps.formula_map import step_map_from_formulas
+from verify.schemes.maps.step_map import StepMap
 from verify.schemes.printed.condition_set import BITS, ConditionSet, NamedEquation, ball_of
 from verify.schemes.printed.judgement import WITHIN, Judgement, judge
 from verify.schemes.printed.naming import Naming
@@ -87,6 +88,17 @@ def formulas_moved_by_units(formulas: Formulas, hamiltonian: Hamiltonian) -> lis
     ]
 
 
+def named_maps(
+    formulas: Formulas, hamiltonian: Hamiltonian
+) -> Iterator[tuple[StepMap, "PrintedMap"]]:
+    """Yield the map of the formulas, with variables for its decimals, by each reading of these."""
+    parsed = _read(dict(formulas), hamiltonian)
+    names = tuple(parsed.numbers)
+    if parsed.readings:
+        step_map = step_map_from_formulas(hamiltonian, parsed.with_names, names)
+        yield from ((step_map, PrintedMap(names, (x,))) for x in parsed.readings)
+
+
 def describe_nearby_defect(near: NearbyOrder, form: str) -> Prose:
     """State the power of h up to which `form`, ΔJ or S, has no term with exact coefficients."""
     power = Formula(f"h^{near.order}")
@@ -108,7 +120,7 @@ def _highest_order(
             if not parsed.readings or len(parsed.numbers) > _MOST_NUMBERS:
                 return None
             step_map = step_map_from_formulas(hamiltonian, parsed.with_names, tuple(parsed.numbers))
-            printed = _PrintedMap(tuple(parsed.numbers), parsed.readings)
+            printed = PrintedMap(tuple(parsed.numbers), parsed.readings)
             return printed.order(partial(elements, series_of(step_map, 2)), most)
     except InputError:  # the map is no polynomial in its decimals, or too long
         return None
@@ -161,7 +173,7 @@ def _exact_or_printed(text: str, parameters: set[sympy.Rational]) -> str:
 
 
 @dataclass(frozen=True)
-class _PrintedMap:
+class PrintedMap:
     """A map over a ring in which the printed numbers are variables, called `names`.
 
     `readings`: the readings of the numbers, the preferred one first.
@@ -182,10 +194,10 @@ class _PrintedMap:
             return None
         order, numbers, judgement = best
         verdict, sentence, _ = ruling_on_order(judgement, order)
-        end = self._find_nonzero(order + 1, numbers, elements) if order < most else None
+        end = self.find_nonzero(order + 1, numbers, elements) if order < most else None
         return NearbyOrder(order, verdict, sentence, end, ())
 
-    def _find_nonzero(
+    def find_nonzero(
         self, n: int, numbers: PrintedNumbers, elements: Callable[[int], Elements]
     ) -> Condition | None:
         """Find an element of hⁿ that is not 0 for any numbers near the printed ones.

@@ -102,10 +102,15 @@ def read_claims(
         for claim in claims:
             check_structure(system, claim.structure.with_values(system.value_substitutions))
     except InputError as error:
-        name, problem = (_with_keys(text) for text in (error.name, error.problem))
-        place = name if name == "keeps" else prefix + name
-        raise type(error)(place, error.value, problem) from None
+        raise name_keys(error, prefix) from None
     return claims
+
+
+def name_keys(error: InputError, prefix: str = "") -> InputError:
+    """Return the error with names of keys in place of options; see `read_claims`."""
+    name, problem = (_with_keys(text) for text in (error.name, error.problem))
+    place = name if name == "keeps" else prefix + name
+    return type(error)(place, error.value, problem)
 
 
 def observable_of(structure: Structure, system: Hamiltonian) -> str:

@@ -20,7 +20,7 @@ from verify.structures.first_integral import FirstIntegral
 from verify.structures.poisson import Poisson
 from verify.structures.reversible import Reversible
 from verify.structures.structure import Structure, is_zero
-from verify.structures.symmetric import Symmetric
+from verify.structures.symmetric import SYMMETRIC
 from verify.structures.symplectic import Entries, SymplecticForm, canonical_entries
 from verify.structures.volume import Volume
 
@@ -183,7 +183,7 @@ class _Reader:
         yield Reversible("reversible", "reversible by p ↦ −p", tuple(signed))
 
     def _symmetric(self) -> Iterator[Structure]:
-        yield Symmetric("symmetric", "symmetric: a step of −h undoes a step of h")
+        yield SYMMETRIC
 
     def _conformal(self) -> Iterator[Structure]:
         if not self.request.factor:

@@ -22,3 +22,6 @@ class Symmetric(Structure):
     def observables(self, names: Sequence[str]) -> tuple[str, ...]:
         """Return the observable that is the way back of a run, by steps of −h."""
         return ("way_back: -h",)
+
+
+SYMMETRIC = Symmetric("symmetric", "symmetric: a step of −h undoes a step of h")

@@ -67,7 +67,7 @@ def test_where_h_is_0_terms_with_it_are_gone_and_so_it_is_in_arguments() -> None
         p / h,  # no number there
     ):
         ring, (element,) = embed([x], ("p", "h"))
-        there = ring.expression_at_0(element, h)
+        there = ring.expression_at(element, {h: sympy.S.Zero})
         assert there == ring.expression(element).subs(h, 0)
         assert not there.has(h)
     assert there.has(sympy.zoo)
@@ -79,7 +79,7 @@ def test_where_it_is_no_expression_it_is_no_number(formula: str) -> None:
     names = {name: symbol(name) for name in "qh"}
     ring, (element,) = embed([sympy.sympify(formula, names)], ("q", "h"))
     for _ in range(3):
-        there = ring.expression_at_0(element, symbol("h"))
+        there = ring.expression_at(element, {symbol("h"): sympy.S.Zero})
         assert there.has(sympy.nan, sympy.zoo, sympy.oo)
         element = ring.diff(element, "h")
 

@@ -49,6 +49,19 @@ def test_a_map_of_ones_own_is_proved_to_keep_area() -> None:
     assert not isinstance(plain, StructuresProof)
 
 
+def test_every_hamiltonian_is_proved_without_a_system() -> None:
+    proof = verify.prove(
+        scheme="gauss4", every_hamiltonian=True, degrees=2, keeps="angular-momentum"
+    )
+    assert isinstance(proof, StructuresProof)
+    assert proof.verdict is Verdict.PROVED
+    wrong = verify.prove(scheme="rk4", every_hamiltonian=True, keeps="energy")
+    assert (wrong.verdict, wrong.keeps[0].order) == (Verdict.REFUTED, 5)
+    assert wrong.keeps[0].example in str(wrong.reason)
+    plain = verify.prove(scheme="lie2", every_hamiltonian=True)
+    assert (plain.order, plain.quantifier) == (3, "every smooth H")
+
+
 BAD: dict[str, tuple[Callable[[], object], str]] = {
     "name": (lambda: verify.prove(PREY, "rk4", keeps="volum"), "keeps=volum: unknown; is volume"),
     "form": (lambda: verify.prove(PREY, "rk4", keeps="symplectic", form="du^dw"), "form=w: unk"),
@@ -56,6 +69,23 @@ BAD: dict[str, tuple[Callable[[], object], str]] = {
     "nothing-asked": (lambda: verify.prove(PREY, "rk4"), "has no H, which is needed here"),
     "sweep": (lambda: verify.sweep(PREY, "rk4", q=1, p=0, step_size=0.1, steps=1), "has no H"),
     "scheme": (lambda: verify.prove(PREY, "stormer-verlet", keeps="volume"), "takes an H"),
+    "every-system": (
+        lambda: verify.prove("pendulum", "lie2", every_hamiltonian=True),  # type: ignore[call-overload]
+        "system=pendulum: goes without every_hamiltonian",
+    ),
+    "every-scheme": (
+        lambda: verify.prove(every_hamiltonian=True, keeps="energy"),
+        "scheme: is of one H; every_hamiltonian=True goes with",
+    ),
+    "every-keeps": (
+        lambda: verify.prove(scheme="rk4", every_hamiltonian=True, keeps="q**3"),
+        "keeps=q**3: is no integral that theorems on every H know",
+    ),
+    "family": (
+        lambda: verify.prove("pendulum", "lie2", degrees=2),  # type: ignore[call-overload]
+        "degrees=2: goes with every_hamiltonian=True",
+    ),
+    "no-system": (lambda: verify.prove(scheme="lie2"), "system: is missing"),  # type: ignore[call-overload]
     "parameter": (
         lambda: verify.prove(PREY, "rk4", parameters={"b": 1}, keeps="volume"),
         "parameter=b: H has no such parameter",

@@ -26,6 +26,9 @@ CLAIMS = {
     "momentum": HENON + 'scheme = "stormer-verlet"\nkeeps = "angular-momentum"\n',
     "reversible": 'system = "pendulum"\nscheme = "stormer-verlet"\nkeeps = "reversible"\n',
     "splitting": SPLITTING,
+    "every": 'every = "hamiltonian"\ndegrees = 2\nscheme = "gauss4"\nkeeps = "angular-momentum"\n',
+    "every-order": 'every = "separable hamiltonian"\nscheme = "stormer-verlet"\n'
+    'keeps = "energy"\ndefect_order = 3\n',
 }
 FALSE = {
     "splitting": ("A 1/2; B 1; A 1/2", "A 1; B 1"),
@@ -35,6 +38,8 @@ FALSE = {
     "energy": ("defect_order = 3", ""),
     "momentum": ("stormer-verlet", "lie4"),
     "reversible": ("stormer-verlet", "lie2"),
+    "every": ("gauss4", "rk4"),
+    "every-order": ("= 3", "= 4"),
 }
 
 

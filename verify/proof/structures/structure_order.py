@@ -19,6 +19,7 @@ from verify.proof.expansion import Leading
 from verify.proof.order_for_one_h import FIRST_ORDERS, nearby_of_scheme, telescoping_of
 from verify.proof.plane.potential import potential_along
 from verify.proof.structures.energy_potential import energy_potential
+from verify.proof.structures.printed_coefficients import judge_printed, prints_decimals
 from verify.proof.structures.structure_leading import leading_of_structure
 from verify.proof.structures.structure_theorems import flow_defect
 from verify.prose import Prose, prose, read_prose
@@ -36,7 +37,8 @@ class StructureProof:
 
     `claimed`: the claimed order of the defect; None if it is claimed to vanish. `first`: the
     leading coefficient of the defect, in its component `component`. `telescopes`: True if it is the
-    derivative of `potential` along the flow. `domain`: where all of it holds.
+    derivative of `potential` along the flow. `domain`: where all of it holds. `example`: in a proof
+    for every H the one of `first`.
     """
 
     structure: Structure
@@ -48,6 +50,7 @@ class StructureProof:
     telescopes: bool | None = None
     potential: str | None = None
     domain: FormulaDomain = EVERYWHERE
+    example: str = ""
 
     @property
     def order(self) -> int | None:
@@ -62,7 +65,7 @@ class StructureProof:
     @property
     def leading(self) -> str:
         """The leading coefficient as a formula; empty if there is none."""
-        return self.first.text if self.order is not None else ""
+        return self.first.text if self.order is not None and self.first.element else ""
 
 
 def check_structure(hamiltonian: Hamiltonian, structure: Structure) -> bool:
@@ -105,9 +108,13 @@ def prove_structure(
     component, leading = leading_of_structure(step_map, structure, scheme, of_flow)
     leading = leading.restrict_to(domain)
     verdict, reason = _judge(structure, leading, claimed)
-    if verdict is Verdict.REFUTED and scheme is not None and nearby_of_scheme(scheme, hamiltonian):
-        verdict = Verdict.UNDECIDED
-        reason = prose(reason, "; the scheme prints rounded coefficients, which may be the cause")
+    if verdict is Verdict.REFUTED and scheme and prints_decimals(scheme, hamiltonian):
+        near = nearby_of_scheme(scheme, hamiltonian) if of_flow else None
+        printed = judge_printed(scheme, hamiltonian, structure, claimed, near, leading)
+        cause = "; the scheme prints rounded coefficients, which may be the cause"
+        verdict, reason = Verdict.UNDECIDED, prose(reason, cause)
+        if printed is not None:
+            verdict, reason, leading = printed.verdict, printed.reason, printed.leading
     proof = StructureProof(
         structure, verdict, reason, leading, component, claimed, domain=domain & leading.domain
     )

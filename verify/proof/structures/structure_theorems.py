@@ -30,8 +30,7 @@ from verify.structures.symmetric import Symmetric
 from verify.structures.symplectic import SymplecticForm
 from verify.structures.volume import Volume
 
-_OF_FIELDS = TaylorSeries | RungeKutta | TreeConditions  # all coordinates are treated alike
-_Pairs = set[tuple[int, int]]
+Products = set[tuple[int, ...]]  # the places of the factors of each product
 
 
 def is_kept_by_coefficients(step_map: StepMap, structure: Structure, scheme: Scheme | None) -> bool:
@@ -41,9 +40,13 @@ def is_kept_by_coefficients(step_map: StepMap, structure: Structure, scheme: Sch
     every_h = scheme.every_h if scheme else None
     if isinstance(structure, Symmetric):
         return is_symmetric(every_h, step_map.hamiltonian.time_dependent)
-    pairs = _pairs_of(structure, step_map.hamiltonian.coordinates)
-    if pairs is not None and _keeps_products(step_map, every_h, pairs):
-        return True
+    products = products_of(structure, step_map.hamiltonian.coordinates)
+    if products is not None:
+        linear = all(len(x) == 1 for x in products)
+        if step_map.keeps_quadratic and (linear or step_map.conditions_hold):
+            return True
+        if keeps_products(every_h, products, len(step_map.field.names) // 2):
+            return True
     return isinstance(every_h, Splitting) and _is_kept_by_parts(step_map.hamiltonian, structure)
 
 
@@ -69,8 +72,9 @@ def flow_defect(
 # -- sums of products ------------------------------------------------------------------------------
 
 
-def _pairs_of(structure: Structure, names: Sequence[str]) -> _Pairs | None:
-    """Return the places a, b of the products in the structure; None if it is no sum of products."""
+def products_of(structure: Structure, names: Sequence[str]) -> Products | None:
+    """Return the places of the factors of each product; None if it is no sum of products of one
+    factor or two."""
     symbols = list(map(symbol, names))
     varying = {*symbols, symbol("t")}
     if isinstance(structure, FirstIntegral):
@@ -80,8 +84,8 @@ def _pairs_of(structure: Structure, names: Sequence[str]) -> _Pairs | None:
         monomials = x.as_poly(*symbols).monoms()
         if max(map(sum, monomials)) > 2:
             return None
-        places = ([k for k, n in enumerate(powers) for _ in range(n)] for powers in monomials)
-        return {(place[0], place[1]) for place in places if len(place) == 2}
+        places = (tuple(k for k, n in enumerate(powers) for _ in range(n)) for powers in monomials)
+        return {place for place in places if place}
     if any(x.free_symbols & varying for x in structure.formulas):
         return None
     if isinstance(structure, SymplecticForm):
@@ -90,19 +94,34 @@ def _pairs_of(structure: Structure, names: Sequence[str]) -> _Pairs | None:
     return {(0, 1)} if is_area else None
 
 
-def _keeps_products(step_map: StepMap, every_h: object, pairs: _Pairs) -> bool:
-    if step_map.keeps_quadratic:
-        return not pairs or step_map.conditions_hold
-    if isinstance(every_h, _OF_FIELDS):
+def keeps_products(every_h: object, products: Products, half: int) -> bool:
+    """Return True if a method keeps each sum of such products that the flow of an H keeps.
+
+    `half`: the place of the first q.
+    """
+    pairs = [x for x in products if len(x) == 2]
+    if isinstance(every_h, TreeConditions):
+        tableau = every_h.tableau
+        conditions_hold = all(condition.holds for condition in tableau.area_conditions())
+        if tableau.of_q is None:
+            return not pairs or conditions_hold
+        # Hairer, Lubich, Wanner, theorem IV.2.4: of a partitioned method products of a p and a q.
+        return conditions_hold and all(places_apart(pair, half) for pair in pairs)
+    if isinstance(every_h, TaylorSeries | RungeKutta):
         return not pairs
     if not isinstance(every_h, StageEquations):
         return False
-    half = len(step_map.field.names) // 2
+    of_one_half = len({k < half for x in products for k in x}) == 1
     return all(
-        stage.kick == stage.drift
+        (stage.kick == stage.drift or of_one_half)
         and all(sum(stage.at_p if k < half else stage.at_q for k in pair) == 1 for pair in pairs)
         for stage in every_h.stages
     )
+
+
+def places_apart(pair: tuple[int, ...], half: int) -> bool:
+    """Return True if one place is that of a p, and one that of a q."""
+    return len({k < half for k in pair}) == 2
 
 
 def _is_kept_by_parts(hamiltonian: Hamiltonian, structure: Structure) -> bool:
@@ -120,7 +139,7 @@ def _is_kept_by_parts(hamiltonian: Hamiltonian, structure: Structure) -> bool:
 # -- reversibility ---------------------------------------------------------------------------------
 
 
-def commutes(scheme: Scheme | None, structure: Reversible, hamiltonian: Hamiltonian) -> bool:
+def commutes(scheme: Scheme | None, structure: Reversible, names: Sequence[str]) -> bool:
     """Return True if an affine ρ maps the steps of the scheme for f to those for ρ_*f.
 
     Runge–Kutta methods and lieη commute with every affine map; a partitioned method, or a
@@ -128,13 +147,11 @@ def commutes(scheme: Scheme | None, structure: Reversible, hamiltonian: Hamilton
     is Φ_(−h).
     """
     every_h = scheme.every_h if scheme else None
-    if not isinstance(every_h, _OF_FIELDS | Splitting | StageEquations):
+    kinds = TaylorSeries | RungeKutta | TreeConditions | Splitting | StageEquations
+    if not isinstance(every_h, kinds):
         return False
-    together = isinstance(every_h, _OF_FIELDS) or (
-        isinstance(every_h, StageEquations)
-        and all(s.kick == s.drift and s.at_p == s.at_q for s in every_h.stages)
-    )
-    symbols = list(map(symbol, hamiltonian.coordinates))
+    together = _treats_all_alike(every_h)
+    symbols = list(map(symbol, names))
     half = len(symbols) // 2
     for k, x in enumerate(structure.reflection):
         polynomial = x.as_poly(*symbols)
@@ -144,3 +161,12 @@ def commutes(scheme: Scheme | None, structure: Reversible, hamiltonian: Hamilton
         if not together and x.free_symbols.intersection(others):
             return False
     return True
+
+
+def _treats_all_alike(every_h: object) -> bool:
+    """Return True if the method's coefficients are the same for all coordinates."""
+    if isinstance(every_h, TreeConditions):
+        return every_h.tableau.of_q is None
+    if isinstance(every_h, StageEquations):
+        return all(s.kick == s.drift and s.at_p == s.at_q for s in every_h.stages)
+    return isinstance(every_h, TaylorSeries | RungeKutta)

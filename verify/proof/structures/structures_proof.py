@@ -23,7 +23,8 @@ class StructuresProof:
 
     `verdict` is the worst of theirs, and UNDECIDED at best for a map that does not follow the flow:
     a step that does nothing keeps everything. `convergence_order` is as in
-    `verify.proof.proof_for_one_h.Proof`.
+    `verify.proof.proof_for_one_h.Proof`. A proof for every H has no `step_map`; `quantifier`
+    says of which H it is, in words.
     """
 
     verdict: Verdict
@@ -31,7 +32,8 @@ class StructuresProof:
     keeps: tuple[StructureProof, ...]
     convergence_order: int | None
     convergence_decided: bool
-    step_map: StepMap = field(repr=False, compare=False)
+    step_map: StepMap | None = field(default=None, repr=False, compare=False)
+    quantifier: str = ""
 
     def __repr__(self) -> str:
         return f"StructuresProof({self.verdict}: {cut(str(self.reason))})"
@@ -50,12 +52,19 @@ def prove_structures(
     """
     proofs = tuple(prove_structure(step_map, x.structure, scheme, x.order) for x in claims)
     convergence, _ = convergence_of_scheme(step_map, scheme)
-    verdict = max((x.verdict for x in proofs), key=_FROM_BEST.index)
-    reasons = [prose(x.structure.label, ": ", x.reason) for x in proofs if x.verdict is verdict]
-    if convergence.order is not None and convergence.order < 1:
-        verdict = max(verdict, Verdict.UNDECIDED, key=_FROM_BEST.index)
-        reasons.append(Prose("the map is no step of this system: it does not agree up to h"))
-    reason = join_prose("; ", reasons)
+    verdict, reason = judge_all(proofs, convergence.order)
     return StructuresProof(
         verdict, reason, proofs, convergence.order, convergence.decided, step_map
     )
+
+
+def judge_all(
+    proofs: Sequence[StructureProof], convergence_order: int | None
+) -> tuple[Verdict, Prose]:
+    """Return the worst verdict with its reasons; see `StructuresProof`."""
+    verdict = max((x.verdict for x in proofs), key=_FROM_BEST.index)
+    reasons = [prose(x.structure.label, ": ", x.reason) for x in proofs if x.verdict is verdict]
+    if convergence_order is not None and convergence_order < 1:
+        verdict = max(verdict, Verdict.UNDECIDED, key=_FROM_BEST.index)
+        reasons.append(Prose("the map is no step of this system: it does not agree up to h"))
+    return verdict, join_prose("; ", reasons)

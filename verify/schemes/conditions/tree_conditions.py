@@ -200,15 +200,16 @@ class _JetsOfClass:
 @lru_cache(maxsize=256)
 def gaps_of(tableau: ImplicitTableau, order: int) -> Mapping[Tree, Poly]:
     """Return b·Φ(t) − 1/γ(t) for the trees of `order` vertices, in the ring of the numbers."""
-    weights = tableau.numbers.tree_weights
-    return {tree: weights.gap(tree) for tree in trees(order)}
+    numbers = tableau.numbers
+    grammar = unrestricted_grammar(len(numbers.blocks))
+    return {tree: numbers.tree_weights.gap(tree) for tree in all_trees(grammar, order)}
 
 
 def holds_for_all_trees(tableau: ImplicitTableau, order: int) -> bool:
     """Return True if the condition of every tree of up to `order` vertices holds exactly.
 
     In the plane fewer suffice, as the module says; for every number of degrees of freedom, all are
-    needed.
+    needed. Those of a partitioned method have two colours.
     """
     ring = tableau.numbers.ring
     gaps = (gap for n in range(1, order + 1) for gap in gaps_of(tableau, n).values())

@@ -302,6 +302,46 @@ def test_rounded_coefficients_refute_nothing_exact() -> None:
         ["kick", "drift", "kick", "drift", "kick", "drift", "kick"],
         ["0.67560359595", third, "-0.175603596", fourth, "-0.175603596", third, "0.67560359595"],
         strict=True))  # fmt: skip
-    proof = prove("p**2/2 + q**4/4", scheme, asked("energy: 5"))
-    assert proof.verdict is not Verdict.PROVED
-    assert prove("p**2/2 + q**4/4", scheme, asked("area")).verdict is Verdict.PROVED
+    system = "p**2/2 + q**4/4"
+    assert prove(system, scheme, asked("area")).verdict is Verdict.PROVED
+    # Taken exactly, they have terms in h^1, h^2, …, and exact ones near them the order 3 at least.
+    assert prove(system, scheme, asked("energy: 4")).verdict is Verdict.ENCLOSED
+    assert prove(system, scheme, asked("energy: 5")).verdict is Verdict.UNDECIDED
+    assert prove(system, f"{scheme}; order 4", asked("energy: 5")).verdict is Verdict.ENCLOSED
+
+
+GAUSS = ("0.2113248654051871 | 0.25 -0.0386751345948129; "
+         "0.7886751345948129 | 0.5386751345948129 0.25; | {b}; order 4")  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("scheme", "keeps", "verdict"),
+    [
+        ("kick 0.50000000001; drift 1; kick 0.49999999999", "symmetric", Verdict.UNDECIDED),
+        ("kick 0.50000100001; drift 1; kick 0.49999899999", "symmetric", Verdict.REFUTED),
+        ("kick 0.50000000001; drift 1; kick 0.49999999999", "energy", Verdict.REFUTED),
+        ("kick 0.50000000001; drift 1; kick 0.49999999999", "energy: 3", Verdict.ENCLOSED),
+        ("kick 0.50000100001; drift 1; kick 0.49999899999", "energy: 3", Verdict.REFUTED),
+        ("p_next = p - 0.99999999999*h*q**3; q_next = q + h*p_next", "energy: 2", Verdict.ENCLOSED),
+        ("p_next = p - 0.99999899999*h*q**3; q_next = q + h*p_next", "energy: 2", Verdict.REFUTED),
+        (GAUSS.format(b="0.5 0.5"), "energy: 5", Verdict.UNDECIDED),
+        (GAUSS.format(b="0.5 0.5"), "energy: 6", Verdict.REFUTED),
+        (GAUSS.format(b="0.5 0.5"), "symmetric", Verdict.PROVED),
+        (GAUSS.format(b="0.4 0.6"), "symmetric", Verdict.REFUTED),
+        ("0 |; 0.33333333333 | 0.33333333333; 0.66666666667 | 0 0.66666666667; | 0.25 0 0.75",
+         "energy: 4", Verdict.UNDECIDED),
+        ("p_next = p - h*q**3 + 0.00000000001*h; q_next = q + 0.90000000001*h*p_next", "energy: 2",
+         Verdict.REFUTED),
+    ],
+)  # fmt: skip
+def test_what_no_rounding_of_printed_coefficients_explains_is_refuted(
+    scheme: str, keeps: str, verdict: Verdict
+) -> None:
+    assert prove("p**2/2 + q**4/4", scheme, asked(keeps)).verdict is verdict
+
+
+def test_decimals_that_are_exact_in_one_reading_are_judged_in_all() -> None:
+    """Of 0.5 and a long decimal the short one is exact in one reading, and rounded in another."""
+    scheme = "kick 0.5; drift 1.00000000001; kick 0.5"
+    kept = prove("p**2/2 + q**4/4", scheme, asked("energy"))
+    assert (kept.verdict, kept.order) == (Verdict.REFUTED, 3)

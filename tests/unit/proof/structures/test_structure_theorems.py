@@ -155,8 +155,8 @@ def reflection(*formulas: str) -> Reversible:
 def test_schemes_commute_with_maps_that_leave_apart_what_they_treat_apart(
     system: str, scheme: str, formulas: tuple[str, ...], holds: bool
 ) -> None:
-    assert commutes(get(scheme), reflection(*formulas), read_system(system)) is holds
-    assert not commutes(None, reflection(*formulas), read_system(system))
+    assert commutes(get(scheme), reflection(*formulas), read_system(system).coordinates) is holds
+    assert not commutes(None, reflection(*formulas), read_system(system).coordinates)
 
 
 @pytest.mark.parametrize(
