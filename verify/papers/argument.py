@@ -4,13 +4,29 @@ A check is one exact fact: polynomials that vanish, equal formulas, or numbers t
 step is marked with what checked it in full: exact algebra or enclosures of this run, which are rows
 of the argument's table, or theorems of the shipped theory for Rocq. A step that is only tried on
 examples, or stands on paper alone, counts as not checked by machine.
+
+`proof` and `refutation` read an argument from one text, in which steps name their checks:
+
+    The verdict's evidence, in the syntax of `read_prose`, with formulas quoted.
+
+    The setting and notation, if there is any to say.
+
+    - A step in so many words. [first_check, Theorems.a_theorem; tried examples]
+    - A step that a reader has to follow.
+    - [steps_of_another_text]
+
+    A remark after the proof, if there is one.
+
+A name with a point is a theorem of the shipped theory for Rocq; the others are arguments of the
+call: a check, several, or the steps that stand there.
 """
 
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import groupby
-from typing import Any
+from typing import Any, TypeAlias
 
 import sympy
 
@@ -25,6 +41,11 @@ from verify.verdict import Verdict
 ALGEBRA = "exact algebra"
 NUMBERS = "exact numbers"
 BALLS = "enclosures"
+_PARAGRAPH_END = re.compile(r"\n\s*\n")
+_ITEM = re.compile(r"^\s*- ", re.MULTILINE)
+_LIST = r"[\w.]+(?:, [\w.]+)*"
+_MARKS = re.compile(rf"(.*?) ?(?:\[({_LIST})?(?:;? ?tried ({_LIST}))?\])?")  # at a step's end
+_NAME = re.compile(r"[\w.]+")
 
 
 @dataclass(frozen=True)
@@ -60,6 +81,9 @@ def same(
     return Check(statement, not wrong, f"`{to_text(wrong[0])}`" if wrong else value)
 
 
+Checks: TypeAlias = "Check | Iterable[Check | ShippedTheorem | Step]"
+
+
 # -- arguments ------------------------------------------------------------------------------------
 
 
@@ -76,9 +100,30 @@ class Step:
     tried: tuple[Check, ...] = ()
 
 
-def step(text: str, *by: Check | ShippedTheorem, tried: Sequence[Check] = ()) -> Step:
-    """Build the step with this text, in the syntax of `read_prose`, and its checks."""
-    return Step(text, by, tuple(tried))
+def steps(text: str, **checks: Checks) -> list[Step]:
+    """Read the steps of a list, and the checks that they name; ValueError if one is not named."""
+    result: list[Step] = []
+    names: set[str] = set()
+    for item in _ITEM.split(text.strip())[1:]:
+        words, by, tried = _MARKS.fullmatch(" ".join(item.split())).groups()  # type: ignore[union-attr]
+        names |= set(_NAME.findall(f"{by or ''}, {tried or ''}"))
+        values, examples = _checks(by, checks), _checks(tried, checks)
+        if words:
+            result.append(Step(words, tuple(values), tuple(examples)))
+        else:
+            result += values
+    if unnamed := checks.keys() - names:
+        raise ValueError(f"no step names {', '.join(sorted(unnamed))}")
+    return result
+
+
+def _checks(names: str | None, checks: Mapping[str, Checks]) -> list[Any]:
+    """Return the checks, theorems or steps of these names, in their order."""
+    values: list[Any] = []
+    for name in _NAME.findall(names or ""):
+        value = ShippedTheorem(*name.split(".")) if "." in name else checks[name]
+        values += [value] if isinstance(value, (Check, ShippedTheorem)) else value
+    return values
 
 
 class Argument(WithProse):
@@ -136,7 +181,7 @@ def _argument(
         )
     return Argument(
         verdict=verdict,
-        evidence=read_prose(evidence),
+        evidence=_read(evidence),
         given=_read(setting),
         steps=tuple(_result(argument_step, checks) for argument_step in steps),
         remark=_read(remark),
@@ -145,8 +190,16 @@ def _argument(
     )
 
 
-proof = partial(_argument, Verdict.PROVED)
-refutation = partial(_argument, Verdict.REFUTED)
+def _read_argument(verdict: Verdict, text: str, /, **checks: Checks) -> Argument:
+    """Build the argument of a text as the head of this file shows it."""
+    evidence, *others = _PARAGRAPH_END.split(text.strip())
+    at = next(k for k, paragraph in enumerate(others) if _ITEM.match(paragraph))
+    setting, remark = " ".join(others[:at]), " ".join(others[at + 1 :])
+    return _argument(verdict, evidence, steps(others[at], **checks), setting=setting, remark=remark)
+
+
+proof = partial(_read_argument, Verdict.PROVED)
+refutation = partial(_read_argument, Verdict.REFUTED)
 
 
 def checks_of(steps: Iterable[Step]) -> list[Check]:

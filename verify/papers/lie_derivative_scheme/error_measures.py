@@ -6,7 +6,16 @@ import sympy
 
 from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import decimal, text
-from verify.papers.argument import NUMBERS, Argument, Check, Step, proof, refutation, step, vanishes
+from verify.papers.argument import (
+    NUMBERS,
+    Argument,
+    Check,
+    Step,
+    proof,
+    refutation,
+    steps,
+    vanishes,
+)
 from verify.papers.differential_polynomials import flow_of_every_hamiltonian
 from verify.papers.elementary_identities import product_of_determinants
 from verify.papers.exact_maps import (
@@ -34,26 +43,20 @@ CHAIN = ShippedTheorem("Differential", "slopes_of_composition")
 def eq_14(highest: int = 5, eta: int = 5) -> Argument:
     """Prove that the exact flow has det 1; checked up to h^highest by lie`eta` for a generic H."""
     return proof(
-        "the exact flow has det = 1 over every step, so det `J_k` − 1 is by how much one step’s "
-        "determinant is off, a local error, and the relative change of a small region’s area",
-        [
-            step(
-                "Eq. 1 has no divergence, so by Liouville’s theorem the exact flow has determinant "
-                "1 at every point and over every step: in its Taylor series no power of h changes "
-                "it.",
-                _FLOW,
-                _check_flow(highest, eta),
-            ),
-            step(
-                "Hence `ΔJ_k` = det `J_k` − 1 is the difference, in step k alone, from what is "
-                "exact; it is 0 up to `h^η` for lieη, whose step agrees with the flow so far.",
-                ShippedTheorem("Theorems", "determinant_of_lie_in_plane"),
-            ),
-            step(
-                "By the change of variables a small region around `z_k` of area A has an image of "
-                "area ``A (1 + ΔJ_k) + o(A)``.",
-            ),
-        ],
+        """
+        the exact flow has det = 1 over every step, so det `J_k` − 1 is by how much one step’s
+        determinant is off, a local error, and the relative change of a small region’s area
+
+        - Eq. 1 has no divergence, so by Liouville’s theorem the exact flow has determinant 1 at
+          every point and over every step: in its Taylor series no power of h changes it.
+          [Taylor.flow_has_no_defect, check_flow]
+        - Hence `ΔJ_k` = det `J_k` − 1 is the difference, in step k alone, from what is exact; it is
+          0 up to `h^η` for lieη, whose step agrees with the flow so far.
+          [Theorems.determinant_of_lie_in_plane]
+        - By the change of variables a small region around `z_k` of area A has an image of area ``A
+          (1 + ΔJ_k) + o(A)``.
+        """,
+        check_flow=_check_flow(highest, eta),
     )
 
 
@@ -69,21 +72,17 @@ def eq_15(true: int = 1, steps: int = 3) -> Argument:
     """Prove that MSE is the mean of (det J − 1)², 1 the true value; `true` is used in its place."""
     squares = mean_of_squares(true, steps)
     return proof(
-        "Eq. 15 is the mean of the squares of det `J_k` − 1, and 1 is the true value of the "
-        "determinant",
-        [
-            step(
-                "By Liouville’s theorem the exact flow has determinant 1, so `ΔJ_k` is the "
-                "calculated value less the true one.",
-                _FLOW,
-                _check_flow(3, 3),
-            ),
-            step(
-                "Eq. 15 is the mean of its squares over the N steps of [t₀, `t_end`]: "
-                "``MSE = (1/N) Σ_{k} (det J_k − 1)^2``.",
-                tried=[squares],
-            ),
-        ],
+        """
+        Eq. 15 is the mean of the squares of det `J_k` − 1, and 1 is the true value of the
+        determinant
+
+        - By Liouville’s theorem the exact flow has determinant 1, so `ΔJ_k` is the calculated value
+          less the true one. [Taylor.flow_has_no_defect, check_flow]
+        - Eq. 15 is the mean of its squares over the N steps of [t₀, `t_end`]: ``MSE = (1/N) Σ_{k}
+          (det J_k − 1)^2``. [tried squares]
+        """,
+        check_flow=_check_flow(3, 3),
+        squares=squares,
     )
 
 
@@ -117,49 +116,47 @@ def eq_15_sum(steps: int = 2) -> Argument:
         NUMBERS,
     )
     return refutation(
-        "Eq. 15 is the mean: the sum of the squares is N times as much",
-        [
-            step(
-                "Eq. 15 has the factor 1/N. For two steps of lie2 on the Duffing oscillator the "
-                "sum of the squares is twice the MSE.",
-                differ,
-            ),
-        ],
+        """
+        Eq. 15 is the mean: the sum of the squares is N times as much
+
+        - Eq. 15 has the factor 1/N. For two steps of lie2 on the Duffing oscillator the sum of the
+          squares is twice the MSE. [differ]
+        """,
+        differ=differ,
     )
 
 
 def criterion_4(stray: Fraction = Fraction(0)) -> Argument:
     """Prove that 1 + Λ is the determinant of the map of all N steps; `stray` is added to it."""
     return proof(
-        "by the chain rule 1 + Λ is the determinant of the map of all N steps at the initial "
-        "value, so that Λ → 0, uniformly on a region of initial values, says that areas within it "
-        "change by o(1) over the whole of [t₀, `t_end`]",
-        [
-            *determinant_of_all_steps(stray),
-            step(
-                "By the change of variables the area of a region’s image after N steps is ``∫ (1 + "
-                "Λ) dp dq`` over the region. If |Λ| ≤ ε for all of its initial values, then the "
-                "area changes by ε of it at most.",
-            ),
-        ],
-        remark="From one initial value alone Λ tells of small regions around that one.",
+        """
+        by the chain rule 1 + Λ is the determinant of the map of all N steps at the initial value,
+        so that Λ → 0, uniformly on a region of initial values, says that areas within it change by
+        o(1) over the whole of [t₀, `t_end`]
+
+        - [determinant_of_all_steps]
+        - By the change of variables the area of a region’s image after N steps is ``∫ (1 + Λ) dp
+          dq`` over the region. If |Λ| ≤ ε for all of its initial values, then the area changes by ε
+          of it at most.
+
+        From one initial value alone Λ tells of small regions around that one.
+        """,
+        determinant_of_all_steps=determinant_of_all_steps(stray),
     )
 
 
 def determinant_of_all_steps(stray: Fraction = Fraction(0)) -> list[Step]:
     """Show that 1 + Λ is the determinant of the map of all steps."""
-    return [
-        step(
-            "The map of N steps is Φ∘…∘Φ, whose Jacobian at `z_0` is the product of the J at `z_0` "
-            "… `z_{N−1}`, by the chain rule.",
-            CHAIN,
-        ),
-        step(
-            "Its determinant is the product of theirs: ``Π_{k} det J_k = 1 + Λ(z_0)``.",
-            product_of_determinants(),
-            _composition(2, stray),
-        ),
-    ]
+    return steps(
+        """
+        - The map of N steps is Φ∘…∘Φ, whose Jacobian at `z_0` is the product of the J at `z_0` …
+          `z_{N−1}`, by the chain rule. [Differential.slopes_of_composition]
+        - Its determinant is the product of theirs: ``Π_{k} det J_k = 1 + Λ(z_0)``.
+          [product_of_determinants, composition]
+        """,
+        product_of_determinants=product_of_determinants(),
+        composition=_composition(2, stray),
+    )
 
 
 def _composition(steps: int, stray: Fraction) -> Check:
@@ -183,14 +180,14 @@ def _composition(steps: int, stray: Fraction) -> Check:
 def smaller_lambda() -> Argument:
     """Prove that |Λ| is the relative change of areas after all steps."""
     return proof(
-        "after all N steps a small region’s area has changed by |Λ| of it, by the chain rule, so "
-        "the smaller |Λ|, the less",
-        [
-            *determinant_of_all_steps(),
-            step(
-                "So a small region of area A around `z_0` ends with the area ``A (1 + Λ) + o(A)``."
-            ),
-        ],
+        """
+        after all N steps a small region’s area has changed by |Λ| of it, by the chain rule, so the
+        smaller |Λ|, the less
+
+        - [determinant_of_all_steps]
+        - So a small region of area A around `z_0` ends with the area ``A (1 + Λ) + o(A)``.
+        """,
+        determinant_of_all_steps=determinant_of_all_steps(),
     )
 
 
@@ -198,8 +195,11 @@ def smaller_lambda_each_step(
     to_and_fro: ExampleMap = TO_AND_FRO, friction: ExampleMap = FRICTION
 ) -> Argument:
     """Refute that a smaller |Λ| means smaller changes of area in every step."""
-    pairs = [(one.run(n), other.run(n)) for n in to_and_fro.steps
-            for one, other in [(to_and_fro, friction)]]  # fmt: skip
+    pairs = [
+        (one.run(n), other.run(n))
+        for n in to_and_fro.steps
+        for one, other in [(to_and_fro, friction)]
+    ]
     worse = [
         abs(a.lam) < abs(b.lam) and min(map(abs, a.delta_j)) > b.largest and a.mse > b.mse
         for a, b in pairs
@@ -212,26 +212,24 @@ def smaller_lambda_each_step(
         NUMBERS,
     )
     return refutation(
-        "a Λ may be small because changes cancel: p' = −p (1 − √h q)/(1 + √h q), q' = −q has Λ = "
-        "0 and changes areas more in every single step than p' = p − h(q + p), q' = q + hp, whose "
-        "|Λ| tends to 1 − 1/e",
-        [
-            step(
-                "p' = −p (1 − √h q)/(1 + √h q), q' = −q shrinks areas by a factor (1 − √h)/(1 + "
-                "√h) and blows them up by its reciprocal in turn, so Λ = 0 for even N.",
-                to_and_fro.changes(),
-                to_and_fro.check(),
-            ),
-            step(
-                "p' = p − h(q + p), q' = q + hp shrinks them by h − h² in each step.",
-                friction.changes(),
-                friction.check(),
-            ),
-            step(
-                "By criteria 2 and 3 the one is the worse, by criterion 4 the better; here for "
-                "three N.",
-                compared,
-            ),
-        ],
-        setting="Λ is a number at the end.",
+        """
+        a Λ may be small because changes cancel: p' = −p (1 − √h q)/(1 + √h q), q' = −q has Λ = 0
+        and changes areas more in every single step than p' = p − h(q + p), q' = q + hp, whose |Λ|
+        tends to 1 − 1/e
+
+        Λ is a number at the end.
+
+        - p' = −p (1 − √h q)/(1 + √h q), q' = −q shrinks areas by a factor (1 − √h)/(1 + √h) and
+          blows them up by its reciprocal in turn, so Λ = 0 for even N. [to_and_fro_changes,
+          to_and_fro_check]
+        - p' = p − h(q + p), q' = q + hp shrinks them by h − h² in each step. [friction_changes,
+          friction_check]
+        - By criteria 2 and 3 the one is the worse, by criterion 4 the better; here for three N.
+          [compared]
+        """,
+        to_and_fro_changes=to_and_fro.changes(),
+        to_and_fro_check=to_and_fro.check(),
+        friction_changes=friction.changes(),
+        friction_check=friction.check(),
+        compared=compared,
     )
