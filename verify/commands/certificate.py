@@ -9,6 +9,7 @@ import click
 from verify.commands.shared.command_group import CommandGroup
 from verify.commands.shared.destinations import OUT_FILE, OUT_FOLDER
 from verify.commands.shared.input import PATH
+from verify.commands.shared.option import flag, option
 from verify.commands.shared.output import CommandAnswer, answering
 
 if TYPE_CHECKING:
@@ -51,13 +52,10 @@ def _check_opens(context: click.Context, parameter: click.Parameter, file: Path)
 
 @certificate.command()
 @click.argument("file", type=PATH, metavar="FILE", callback=_check_opens)
-@click.option(
-    "--coq", type=OUT_FILE, required=True, metavar="OUT.v", help="Write the proof to this file."
-)
-@click.option(
+@option("--coq", "OUT.v", "Write the proof to this file.", type=OUT_FILE, required=True)
+@flag(
     "--beside-theory",
-    is_flag=True,
-    help="Import the theory, which `verify certificate theory` installs, instead of including it.",
+    "Import the theory, which `verify certificate theory` installs, instead of including it.",
 )
 @answering
 def export(file: Path, coq: Path, beside_theory: bool) -> CommandAnswer:

@@ -12,6 +12,7 @@ from verify.commands.shared.input import (
     one_or_every,
     scheme_option,
 )
+from verify.commands.shared.option import option
 from verify.commands.shared.output import CommandAnswer, answering, cut, pick
 
 if TYPE_CHECKING:
@@ -22,13 +23,13 @@ if TYPE_CHECKING:
 @hamiltonian_options
 @scheme_option
 @answering
-@click.option(
+@option(
     "--order",
+    "N",
+    "The highest power of h in H̃: 1 … 10, for every H 1 … 8.",
     type=int,
     default=4,
     show_default=True,
-    metavar="N",
-    help="The highest power of h in H̃: 1 … 10, for every H 1 … 8.",
 )
 @every_options
 def modified(

@@ -15,6 +15,7 @@ from verify.commands.shared.input import (
     scheme_option,
     system_options,
 )
+from verify.commands.shared.option import flag, option
 from verify.commands.shared.output import CommandAnswer, answering, cut, pick, print_line
 from verify.commands.shared.structure_options import compose_scheme, split_option, structure_options
 from verify.errors import NOT_GIVEN, InputError
@@ -35,23 +36,19 @@ if TYPE_CHECKING:
 @scheme_option
 @answering
 @every_options
-@click.option(
-    "--time-dependent",
-    is_flag=True,
-    help="With --every-hamiltonian: for every H(p, q, t), or T(p, t) + V(q, t).",
-)
-@click.option(
+@flag("--time-dependent", "With --every-hamiltonian: for every H(p, q, t), or T(p, t) + V(q, t).")
+@option(
     "--degrees",
+    "N",
+    "With --every-hamiltonian: in N degrees of freedom; without it the names in H decide.",
     type=int,
-    metavar="N",
-    help="With --every-hamiltonian: in N degrees of freedom; without it the names in H decide.",
 )
-@click.option(
+@option(
     "--certificate",
-    type=OUT_FILE,
-    metavar="FILE",
-    help="Write the identities of the proof, for `verify certificate check`; if H has functions "
+    "FILE",
+    "Write the identities of the proof, for `verify certificate check`; if H has functions "
     "other than sin, cos, exp and quotients, those of the proof for every H.",
+    type=OUT_FILE,
 )
 @structure_options
 @split_option

@@ -18,6 +18,7 @@ from verify.commands.shared.execution_options import (
     with_tasks,
 )
 from verify.commands.shared.input import FILE, PATH
+from verify.commands.shared.option import flag, option
 from verify.commands.shared.output import CommandAnswer, answering, pick
 from verify.errors import NOT_GIVEN, InputError, without_controls
 
@@ -39,16 +40,13 @@ reference.add_command(compare)
 
 @reference.command()
 @click.argument("scenes", type=FILE, nargs=-1, metavar="[SCENE]...")
-@click.option(
-    "-o",
-    "--output",
+@option(
+    "-o --output",
+    "DIR",
+    "The folder to write into.  [default: SCENE-reference, or reference-data]",
     type=OUT_FOLDER,
-    metavar="DIR",
-    help="The folder to write into.  [default: SCENE-reference, or reference-data]",
 )
-@click.option(
-    "--parquet", is_flag=True, help="Write the tables as Parquet too, which needs pyarrow."
-)
+@flag("--parquet", "Write the tables as Parquet too, which needs pyarrow.")
 @with_tasks
 def make(
     scenes: tuple[str, ...],
@@ -96,25 +94,17 @@ def make(
 
 @reference.command()
 @click.argument("folder", required=False, type=PATH, metavar="[DIR]")
-@click.option(
-    "--share",
-    default=_DEFAULT_SHARE,
-    metavar="X",
-    help="The part of the data that is recomputed, 0 … 1.",
-)
-@click.option("--all", "everything", is_flag=True, help="Recompute all of them.")
-@click.option(
+@option("--share", "X", "The part of the data that is recomputed, 0 … 1.", default=_DEFAULT_SHARE)
+@flag("--all everything", "Recompute all of them.")
+@option(
     "--most-steps",
-    type=click.IntRange(1),
-    metavar="N",
-    help="The limit on the steps of all recomputed runs; the others are named.  "
+    "N",
+    "The limit on the steps of all recomputed runs; the others are named.  "
     f"[default: {_DEFAULT_STEP_LIMIT:,}; none with --all]",
+    type=click.IntRange(1),
 )
-@click.option(
-    "--seed",
-    type=click.IntRange(0),
-    metavar="S",
-    help="The seed of the random sample; by default a random one.",
+@option(
+    "--seed", "S", "The seed of the random sample; by default a random one.", type=click.IntRange(0)
 )
 @with_placement
 @answering

@@ -9,6 +9,7 @@ import click
 
 from verify.commands.shared.execution_options import progress_bar
 from verify.commands.shared.input import PATH, SCHEME
+from verify.commands.shared.option import option
 from verify.commands.shared.output import CommandAnswer, answering, pick
 from verify.errors import InputError
 
@@ -48,16 +49,19 @@ _LEAST_DIGITS = 0.5  # if fewer digits agree, the text says that none does
 
 @click.command()
 @click.argument("theirs", type=PATH, metavar="THEIRS.csv")
-@click.option("--data", type=PATH, metavar="DIR",
-              help="The reference data; without it, the committed set.")  # fmt: skip
-@click.option("--scene", metavar="NAME", help="The scene of all rows, such as duffing.")
-@click.option("--scheme", type=SCHEME, metavar="NAME", help="The scheme of all rows.")
-@click.option("--step-size", metavar="H", help="Their step size.")
-@click.option("--q", "q0", metavar="X", help="Their initial q.")
-@click.option("--p", "p0", metavar="X", help="Their initial p.")
-@click.option("--t0", metavar="T0", help="Their start time, if H depends on t.")
-@click.option("--column", "columns", multiple=True, metavar="OURS=THEIRS",
-              help="The table's name of a column, such as q=position; repeatable.")  # fmt: skip
+@option("--data", "DIR", "The reference data; without it, the committed set.", type=PATH)
+@option("--scene", "NAME", "The scene of all rows, such as duffing.")
+@option("--scheme", "NAME", "The scheme of all rows.", type=SCHEME)
+@option("--step-size", "H", "Their step size.")
+@option("--q q0", "X", "Their initial q.")
+@option("--p p0", "X", "Their initial p.")
+@option("--t0", "T0", "Their start time, if H depends on t.")
+@option(
+    "--column columns",
+    "OURS=THEIRS",
+    "The table's name of a column, such as q=position; repeatable.",
+    multiple=True,
+)
 @answering
 def compare(
     theirs: Path,

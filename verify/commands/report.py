@@ -19,6 +19,7 @@ from verify.commands.shared.destinations import (
 )
 from verify.commands.shared.execution_options import kept_tasks, with_placement
 from verify.commands.shared.input import hamiltonian_of, load_target
+from verify.commands.shared.option import flag, option
 from verify.commands.shared.output import CommandAnswer, answering
 from verify.commands.shared.scene_options import (
     check_scene_alone,
@@ -42,13 +43,11 @@ _PAGE = "html"
 
 @click.command()
 @with_one_line(
-    click.option("--steps", type=int, metavar="N", help="At least 1; or:"),
-    click.option("--time", metavar="T", help="N is T/H rounded down."),
+    option("--steps", "N", "At least 1; or:", type=int),
+    option("--time", "T", "N is T/H rounded down."),
 )
 @start_options
-@click.option(
-    "-o", "--output", type=OUT_FOLDER, metavar="DIR", help="Write it.  [default: SCENE-report]"
-)
+@option("-o --output", "DIR", "Write it.  [default: SCENE-report]", type=OUT_FOLDER)
 @click.option(
     "--format",
     "formats",
@@ -58,22 +57,20 @@ _PAGE = "html"
     help="html, DIR/index.html, or md, DIR/report.md with DIR/figures, for a "
     "repository; repeatable.",
 )
-@click.option(
-    "--full", is_flag=True, help="Unfold all that the page folds, on paper too: many pages."
-)
-@click.option(
+@flag("--full", "Unfold all that the page folds, on paper too: many pages.")
+@option(
     "--findings",
+    "DIR",
+    "Of integrators: a note for its maintainers on each mistake that matters, DIR/NAME.md.",
     type=OUT_FOLDER,
-    metavar="DIR",
-    help="Of integrators: a note for its maintainers on each mistake that matters, DIR/NAME.md.",
 )
-@click.option(
+@option(
     "--errata",
+    "DIR",
+    "Of a paper: an erratum to copy, DIR/errata.tex and .md, and a page for an editor.",
     type=OUT_FOLDER,
-    metavar="DIR",
-    help="Of a paper: an erratum to copy, DIR/errata.tex and .md, and a page for an editor.",
 )
-@click.option("--force", is_flag=True, help="Also into a folder with files that are not ours.")
+@flag("--force", "Also into a folder with files that are not ours.")
 @with_placement
 @answering
 def report(

@@ -22,6 +22,7 @@ from verify.commands.shared.input import (
     values_of,
     with_kept_system,
 )
+from verify.commands.shared.option import option
 from verify.commands.shared.output import CommandAnswer, answering
 from verify.commands.shared.structure_options import (
     compose_scheme,
@@ -44,44 +45,37 @@ if TYPE_CHECKING:
 @cache_option
 @structure_options
 @split_option
-@click.option("--step-size", required=True, metavar="H", help="The step size, greater than 0.")
-@click.option(
-    "--steps", type=int, metavar="N", help="The number of steps, at least 1; or give --time."
-)
-@click.option("--time", metavar="T", help="N is T/H rounded down.")
-@click.option(
-    "--t0", default="0", metavar="T0", help="The start time, if the Hamiltonian depends on t."
-)
-@click.option("--q", metavar="Q", help="Initial displacement; of q1, q2, … one each, as 0.1,0.2.")
-@click.option("--p", metavar="P", help="Initial momentum; as --q.")
-@click.option("--start", metavar="NAME=VALUE,…", help="Of --field: the initial values, as u=1,v=2.")
-@click.option(
-    "--digits", type=int, metavar="D", help="The number of significant digits that are requested."
-)
+@option("--step-size", "H", "The step size, greater than 0.", required=True)
+@option("--steps", "N", "The number of steps, at least 1; or give --time.", type=int)
+@option("--time", "T", "N is T/H rounded down.")
+@option("--t0", "T0", "The start time, if the Hamiltonian depends on t.", default="0")
+@option("--q", "Q", "Initial displacement; of q1, q2, … one each, as 0.1,0.2.")
+@option("--p", "P", "Initial momentum; as --q.")
+@option("--start", "NAME=VALUE,…", "Of --field: the initial values, as u=1,v=2.")
+@option("--digits", "D", "The number of significant digits that are requested.", type=int)
 @click.option(
     "--arithmetic",
     help=f"{', '.join(number_systems.names())}; or auto, the fastest that certifies the digits. "
     "By default float64, or auto if --digits is given.",
 )
-@click.option(
-    "--csv",
-    "table",
-    type=OUT_FILE,
-    metavar="FILE",
-    help="Write t, p, q, H − H₀, ΔJ and Λ of the states to this file; - is standard output, which "
+@option(
+    "--csv table",
+    "FILE",
+    "Write t, p, q, H − H₀, ΔJ and Λ of the states to this file; - is standard output, which "
     "then gets nothing else.",
+    type=OUT_FILE,
 )
-@click.option(
+@option(
     "--points",
+    "N",
+    "The largest number of states in the file after the initial one.  [default: 10000]",
     type=int,
-    metavar="N",
-    help="The largest number of states in the file after the initial one.  [default: 10000]",
 )
-@click.option(
+@option(
     "--keep",
+    "DIR",
+    "Keep checkpoints in this folder; the same command continues from them.",
     type=OUT_FOLDER,
-    metavar="DIR",
-    help="Keep checkpoints in this folder; the same command continues from them.",
 )
 def run(
     hamiltonian: "Hamiltonian",

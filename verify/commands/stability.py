@@ -12,6 +12,7 @@ import click
 
 from verify.commands.shared.execution_options import perform, with_tasks
 from verify.commands.shared.input import hamiltonian_of, parse_coordinates
+from verify.commands.shared.option import flag, option
 from verify.commands.shared.output import CommandAnswer, print_once
 from verify.commands.shared.scene_options import scenes_of, start_options, with_one_line
 from verify.errors import NOT_GIVEN, InputError
@@ -164,16 +165,13 @@ _LINE_WIDTH, _INDENT = 100, " " * 6
 
 @click.command()
 @with_one_line(
-    click.option(
-        "--steps", type=int, metavar="N", help="The number of steps, at least 1; or give --time."
-    ),
-    click.option("--time", metavar="T", help="N is T/H rounded down."),
+    option("--steps", "N", "The number of steps, at least 1; or give --time.", type=int),
+    option("--time", "T", "N is T/H rounded down."),
 )
 @start_options
-@click.option(
+@flag(
     "--linear",
-    is_flag=True,
-    help="Judge one scheme on the harmonic oscillator, or at an equilibrium of H, by algebra.",
+    "Judge one scheme on the harmonic oscillator, or at an equilibrium of H, by algebra.",
 )
 @with_tasks
 def stability(

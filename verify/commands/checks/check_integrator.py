@@ -22,6 +22,7 @@ from verify.commands.checks.check_options import (
 from verify.commands.shared import proof_output as show
 from verify.commands.shared.execution_options import clock
 from verify.commands.shared.input import hamiltonian_of, system_options, time_limit_option
+from verify.commands.shared.option import flag, option
 from verify.commands.shared.output import CommandAnswer, answering, cut, pick
 from verify.commands.shared.structure_options import structure_options
 from verify.errors import NOT_GIVEN, InputError
@@ -38,34 +39,33 @@ _ORDER_RANGE = click.IntRange(1, 12)
 
 @click.command("check-integrator")
 @click.argument("target", required=False, metavar="[MODULE:FUNCTION | LIB.so:SYMBOL]")
-@click.option(
+@option(
     "--command",
-    metavar="PROGRAM",
-    help="A program that answers each line `t h p1 … pn q1 … qn` with a line `p1 … pn q1 … qn`.",
+    "PROGRAM",
+    "A program that answers each line `t h p1 … pn q1 … qn` with a line `p1 … pn q1 … qn`.",
 )
-@click.option(
-    "--type",
-    "number_type",
+@option(
+    "--type number_type",
+    "TYPE",
+    "The type of the numbers of a library or program: double, long-double, float128, "
+    "double-double.",
     default="double",
     show_default=True,
-    metavar="TYPE",
-    help="The type of the numbers of a library or program: double, long-double, float128, "
-    "double-double.",
 )
 @system_options
-@click.option(
+@option(
     "--arguments",
-    metavar="ORDER",
-    help="The order of a Python function's arguments, such as q,p,h or q,p,t,h; it returns p' and "
+    "ORDER",
+    "The order of a Python function's arguments, such as q,p,h or q,p,t,h; it returns p' and "
     "q' in that order too. By default the names of its arguments decide.",
 )
 @place_options
 @point_option
 @step_size_option
-@click.option("--order", type=_ORDER_RANGE, metavar="K", help="Claimed order of convergence.")
-@click.option("--area-preserving", is_flag=True, help="Claimed: det J ≡ 1.")
-@click.option("--symplectic", is_flag=True, help="Claimed: JᵀΩJ ≡ Ω; in the plane det J ≡ 1.")
-@click.option("--area-order", type=_ORDER_RANGE, metavar="K", help="Claimed: ΔJ = O(h^K).")
+@option("--order", "K", "Claimed order of convergence.", type=_ORDER_RANGE)
+@flag("--area-preserving", "Claimed: det J ≡ 1.")
+@flag("--symplectic", "Claimed: JᵀΩJ ≡ Ω; in the plane det J ≡ 1.")
+@option("--area-order", "K", "Claimed: ΔJ = O(h^K).", type=_ORDER_RANGE)
 @structure_options
 @time_limit_option
 @allow_undecided_option

@@ -19,6 +19,7 @@ from verify.commands.checks.check_options import (
 )
 from verify.commands.shared.execution_options import clock
 from verify.commands.shared.input import time_limit_option, values_of
+from verify.commands.shared.option import option
 from verify.commands.shared.output import CommandAnswer, answering, pick
 from verify.commands.shared.proof_output import point_json
 from verify.commands.shared.structure_options import structure_options
@@ -31,31 +32,25 @@ if TYPE_CHECKING:
 
 @click.command("check-map")
 @click.argument("target", metavar="MODULE:FUNCTION")
-@click.option(
-    "--degrees",
-    type=int,
-    default=1,
-    show_default=True,
-    metavar="N",
-    help="The number of degrees of freedom.",
+@option(
+    "--degrees", "N", "The number of degrees of freedom.", type=int, default=1, show_default=True
 )
-@click.option(
+@option(
     "--arguments",
-    metavar="ORDER",
-    help="The order of the coordinates in the argument of a map(z), such as q1,p1,q2,p2. "
+    "ORDER",
+    "The order of the coordinates in the argument of a map(z), such as q1,p1,q2,p2. "
     "By default p1, …, pn, q1, …, qn.",
 )
-@click.option(
-    "--param",
-    "params",
+@option(
+    "--param params",
+    "NAME=VALUE",
+    "A further argument that it takes by name; repeatable.",
     multiple=True,
-    metavar="NAME=VALUE",
-    help="A further argument that it takes by name; repeatable.",
 )
-@click.option(
+@option(
     "--coordinates",
-    metavar="NAMES",
-    help="The names of its arguments, flattened, in their order, such as v1,v2,x1,x2; any number. "
+    "NAMES",
+    "The names of its arguments, flattened, in their order, such as v1,v2,x1,x2; any number. "
     "By default p1, …, pn, q1, …, qn.",
 )
 @place_options

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared.input import options
+from verify.commands.shared.option import flag, option, options
 from verify.commands.shared.output import pick, print_line
 from verify.commands.shared.proof_output import point_json
 from verify.errors import InputError
@@ -23,9 +23,7 @@ if TYPE_CHECKING:
     from verify.integrators.results import Counterexample, Finding
 
 
-allow_undecided_option = click.option(
-    "--allow-undecided", is_flag=True, help="Exit status 0 even if a claim is UNDECIDED."
-)
+allow_undecided_option = flag("--allow-undecided", "Exit status 0 even if a claim is UNDECIDED.")
 
 
 def is_failure(verdicts: Iterable[str], *, allow_undecided: bool) -> bool:
@@ -47,28 +45,24 @@ def print_tally(verdicts: Iterable[str]) -> None:
 # -- the places at which a user's code is evaluated ------------------------------------------------
 
 place_options = options(
-    click.option(
-        "--q", "q", metavar="Q", help="The displacements of the first state to try: q, or q1,q2,…"
-    ),
-    click.option("--p", "p", metavar="P", help="Its momenta: p, or p1,p2,…"),
-    click.option(
+    option("--q q", "Q", "The displacements of the first state to try: q, or q1,q2,…"),
+    option("--p p", "P", "Its momenta: p, or p1,p2,…"),
+    option(
         "--scale",
-        metavar="NAME=SIZE,…",
-        help="Sizes of the coordinates, such as q=7000,p=7.5; by default those of H or the map.",
+        "NAME=SIZE,…",
+        "Sizes of the coordinates, such as q=7000,p=7.5; by default those of H or the map.",
     ),
-    click.option(
+    option(
         "--within",
-        metavar="SIZE",
-        help="A defect that you allow, such as 1e-8; by default that of the numbers' rounding.",
+        "SIZE",
+        "A defect that you allow, such as 1e-8; by default that of the numbers' rounding.",
     ),
 )
-point_option = click.option(
-    "--point",
-    metavar="Z",
-    help="The first state to try, one number for each coordinate, in their order.",
+point_option = option(
+    "--point", "Z", "The first state to try, one number for each coordinate, in their order."
 )
-step_size_option = click.option(
-    "--step-size", metavar="H", help="The step size that matters to you, the largest that is tried."
+step_size_option = option(
+    "--step-size", "H", "The step size that matters to you, the largest that is tried."
 )
 
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify import observables
+from verify.commands.shared.option import flag
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -56,9 +57,7 @@ def answering(command: Callable[..., CommandAnswer]) -> Callable[..., None]:
         if answer.failed:
             raise SystemExit(FAILED)
 
-    return click.option(
-        "--json", "as_json", is_flag=True, help="One JSON object on standard output."
-    )(wrapper)
+    return flag("--json as_json", "One JSON object on standard output.")(wrapper)
 
 
 def pick(source: object, *names: str) -> dict[str, Any]:
