@@ -1,6 +1,5 @@
 """The command `verify prove`, for one Hamiltonian or for every one."""
 
-import time
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,6 +18,7 @@ from verify.commands.shared.option import flag, option
 from verify.commands.shared.output import CommandAnswer, answering, cut, pick, print_line
 from verify.commands.shared.structure_options import compose_scheme, split_option, structure_options
 from verify.errors import NOT_GIVEN, InputError
+from verify.schemes import get
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -104,21 +104,17 @@ def _prove_structures(
 ) -> CommandAnswer:
     from verify.commands.shared.structure_output import print_structures, structure_json
     from verify.proof.structures.structures_proof import prove_structures
-    from verify.schemes import get
     from verify.structures.reading import KeepsRequest, read_structures
 
-    start_time = time.perf_counter()
     integrator = get(scheme)
     request = keeps or KeepsRequest(keeps=("volume",))
     claims = read_structures(request, hamiltonian)
     proof = prove_structures(integrator.step_map(hamiltonian), claims, integrator)
-    seconds = f"{time.perf_counter() - start_time:.6f}"
 
     def data() -> dict[str, Any]:
         return {
             **pick(proof, "verdict", "reason"), **hamiltonian.texts, "scheme": integrator.name,
             **show.agreement_json(proof), "keeps": list(map(structure_json, proof.keeps)),
-            "seconds": seconds,
         }  # fmt: skip
 
     def show_proof() -> None:
@@ -126,7 +122,7 @@ def _prove_structures(
         print_structures(proof.keeps)
         click.echo(f"  the map  agrees with the exact flow {show.describe_agreement(proof)}")
 
-    return CommandAnswer(data, show_proof, failed=proof.verdict == "REFUTED")
+    return CommandAnswer(data, show_proof, failed=proof.verdict == "REFUTED", timed=True)
 
 
 def _prove_every(
@@ -134,11 +130,9 @@ def _prove_every(
 ) -> CommandAnswer:
     from verify.proof.order_for_every_h import prove_for_every_h
 
-    start_time = time.perf_counter()
     proof = prove_for_every_h(
         scheme, separable, timed=timed, degrees=1 if degrees is None else degrees
     )
-    seconds = f"{time.perf_counter() - start_time:.6f}"
     if certificate is not None:
         from verify.proof.certificates.certification import certify_for_every_h
 
@@ -147,9 +141,10 @@ def _prove_every(
     # Scripts read the lines of a proof in the plane, so their older form stays.
     print_in_degrees = partial(show.print_symplectic, texts, proof.scheme)
     return CommandAnswer(
-        lambda: show.proof_json(texts, proof.scheme, proof, seconds, **show.checks_json(proof)),
+        lambda: show.proof_json(texts, proof.scheme, proof, **show.checks_json(proof)),
         lambda: (_print_every if proof.planar else print_in_degrees)(proof),
         failed=proof.verdict == "REFUTED",
+        timed=True,
     )
 
 
@@ -158,15 +153,12 @@ def _prove_one(hamiltonian: "Hamiltonian", scheme: str, certificate: Path | None
     from verify.proof.order_for_one_h import prove as prove_order
     from verify.proof.plane.potential import potential_of
     from verify.proof.special_values import special_values
-    from verify.schemes import get
 
-    start_time = time.perf_counter()
     integrator = get(scheme)
     proof = prove_order(integrator.step_map(hamiltonian), integrator)
     # In n degrees of freedom the proof itself says whether its leading coefficient telescopes.
     potential = potential_of(proof, integrator) if proof.planar else None
     special = () if potential is None else special_values(proof, integrator)
-    seconds = f"{time.perf_counter() - start_time:.6f}"
     if certificate is not None:
         _write_certificate(
             _build_certificate(
@@ -189,9 +181,10 @@ def _prove_one(hamiltonian: "Hamiltonian", scheme: str, certificate: Path | None
             show.print_proof(hamiltonian, integrator.name, proof, potential, special)
 
     return CommandAnswer(
-        lambda: show.proof_json(hamiltonian.texts, integrator.name, proof, seconds, **extra_json()),
+        lambda: show.proof_json(hamiltonian.texts, integrator.name, proof, **extra_json()),
         show_proof,
         failed=proof.verdict == "REFUTED",
+        timed=True,
     )
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.arithmetic.exact import decimal, rational, short
 from verify.commands.shared.execution_options import progress_bar
 from verify.commands.shared.input import PATH, SCHEME
 from verify.commands.shared.option import option
@@ -153,7 +154,6 @@ def _as_json(table: "SubmittedTable", comparison: "TableComparison") -> dict[str
 
 
 def _separation_json(x: "WorstSeparation") -> dict[str, Any]:
-    from verify.arithmetic.exact import decimal
 
     evaluations = {"plain": x.result.plain, "closed_form": x.result.closed_form}
     parts = {
@@ -167,7 +167,6 @@ def _separation_json(x: "WorstSeparation") -> dict[str, Any]:
 
 
 def _print(table: "SubmittedTable", comparison: "TableComparison") -> None:
-    from verify.arithmetic.exact import short
 
     rows, runs = _format_count(comparison.rows, "row"), _format_count(comparison.runs, "run")
     click.echo(f"{rows} of {runs} compared; {_format_count(table.rows, 'row')} read")
@@ -209,7 +208,6 @@ def _shorten_label(label: str) -> str:
 
 def _shorten_number(text: str) -> str:
     """Return a long decimal or quotient as a decimal, without the middle of its digits."""
-    from verify.arithmetic.exact import decimal, rational
 
     decimal_text = decimal(rational(text), _MAX_DIGITS)
     # `decimal` writes all digits, then e and a signed exponent.
@@ -257,7 +255,6 @@ def _print_few(lines: "Sequence[str]", ending: str) -> None:
 
 
 def _describe_separation(x: "WorstSeparation") -> str:
-    from verify.arithmetic.exact import decimal
 
     plain = x.result.plain
     assert plain is not None  # noqa: S101 - without it this is not called

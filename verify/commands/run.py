@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify import arithmetic as number_systems
+from verify.arithmetic.exact import positive, whole
 from verify.commands.shared import output as show
 from verify.commands.shared.destinations import (
     OUT_FILE,
@@ -97,7 +98,6 @@ def run(
     verify run --system pendulum --scheme lie2 --step-size 0.01 --time 20 --q 1 --p 0 \\
            --csv orbit.csv
     """
-    from verify.arithmetic.exact import whole
     from verify.scenes.measured_structures import measured_structures
     from verify.scenes.results.run import MOST_POINTS
 
@@ -148,7 +148,6 @@ def _run_scheme(
     t0: str,
 ) -> "tuple[RunResult, str]":
     """Return the run, and a note if --time is no multiple of the step size; else an empty text."""
-    from verify.arithmetic.exact import positive
     from verify.execution.keeper import Keeper, name_of
     from verify.hamiltonians.run_domain import check_point, start_of
     from verify.runs.requested_run import run as run_scheme

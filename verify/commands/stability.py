@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.arithmetic.exact import plain, positive, rational, text
 from verify.commands.shared.execution_options import perform, with_tasks
 from verify.commands.shared.input import hamiltonian_of, parse_coordinates
 from verify.commands.shared.option import flag, option
@@ -80,7 +81,6 @@ def _print_oscillator(theory: "LinearStability", delta_j: str) -> None:
 
 
 def _answer_at_equilibrium(scheme: str, options: Mapping[str, Any]) -> CommandAnswer:
-    from verify.arithmetic.exact import positive
     from verify.hamiltonians.run_domain import point_of
     from verify.studies.stability.equilibrium import linear_at_equilibrium
 
@@ -93,7 +93,6 @@ def _answer_at_equilibrium(scheme: str, options: Mapping[str, Any]) -> CommandAn
 
 
 def _equilibrium_json(theory: "LinearAtEquilibrium") -> dict[str, Any]:
-    from verify.arithmetic.exact import text
     from verify.hamiltonians.run_domain import coordinate_texts
 
     hamiltonian, interval = theory.hamiltonian, theory.interval
@@ -119,7 +118,6 @@ def _equilibrium_json(theory: "LinearAtEquilibrium") -> dict[str, Any]:
 
 
 def _print_equilibrium(theory: "LinearAtEquilibrium") -> None:
-    from verify.arithmetic.exact import plain, rational, text
 
     point_text = (
         ", ".join(f"{name} = {text(x)}" for name, x in theory.point.items() if x) or "the origin"

@@ -1,6 +1,5 @@
 """The command `verify check-integrator`: a user's own step(p, q, h)."""
 
-import time
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -123,7 +122,6 @@ def check_integrator(
     from verify.integrators.system_check import check_system
     from verify.structures.reading import read_structures
 
-    start_time = time.perf_counter()
     parsed = hamiltonian_of(system, hamiltonian, params, field)
     request = request_from(parsed.coordinates, **place_texts)
     if parsed.symbols:
@@ -134,10 +132,10 @@ def check_integrator(
     structures = read_structures(keeps, parsed)
     with clock(target_name):
         finding = check_system(callee, parsed, claims, structures, request)
-    seconds = f"{time.perf_counter() - start_time:.6f}"
     return CommandAnswer(
-        lambda: _json(parsed, target_name, finding, seconds),
+        lambda: _json(parsed, target_name, finding),
         lambda: _print(parsed, target_name, finding, with_keeps=bool(structures)),
+        timed=True,
         # Without a claim there is nothing to leave undecided: only a refutation fails.
         failed=is_failure(
             [finding.verdict],
@@ -191,9 +189,7 @@ def _build_callee(
     )  # fmt: skip
 
 
-def _json(
-    hamiltonian: "Hamiltonian", target: str, finding: "Finding", seconds: str
-) -> dict[str, Any]:
+def _json(hamiltonian: "Hamiltonian", target: str, finding: "Finding") -> dict[str, Any]:
     from verify.arithmetic.exact import text
     from verify.integrators.results import potential_of_finding
 
@@ -226,7 +222,6 @@ def _json(
         "places": places_json(hamiltonian.coordinates, finding.places),
         "keeps": keeps_json(finding),
         **pick(finding, "domain", "faults", "notes"),
-        "seconds": seconds,
     }  # fmt: skip
 
 

@@ -1,6 +1,5 @@
 """The command `verify check-map`: any map of one's own, without an H."""
 
-import time
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -99,7 +98,6 @@ def check_map(
     from verify.integrators.user_code.coordinate_layout import callee_of_coordinates
     from verify.integrators.user_code.loading import callee_from, load
 
-    start_time = time.perf_counter()
     check_degrees(degrees)
     names = coordinates_in(degrees)
     if coordinates is not None:
@@ -125,15 +123,15 @@ def check_map(
             finding = check_map_keeps(callee, claims, request)
         else:
             finding = check(callee, request)
-    seconds = f"{time.perf_counter() - start_time:.6f}"
     return CommandAnswer(
-        lambda: _json(target, names, finding, seconds),
+        lambda: _json(target, names, finding),
         lambda: _print(target, finding, with_keeps=with_keeps),
+        timed=True,
         failed=is_failure([finding.verdict], allow_undecided=allow_undecided),
     )
 
 
-def _json(target: str, names: tuple[str, ...], finding: "Finding", seconds: str) -> dict[str, Any]:
+def _json(target: str, names: tuple[str, ...], finding: "Finding") -> dict[str, Any]:
     example = finding.counterexample
     return {
         **pick(finding, "verdict", "reason"),
@@ -149,7 +147,6 @@ def _json(target: str, names: tuple[str, ...], finding: "Finding", seconds: str)
         "places": places_json(names, finding.places),
         "keeps": keeps_json(finding),
         **pick(finding, "domain", "faults", "notes"),
-        "seconds": seconds,
     }  # fmt: skip
 
 

@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.arithmetic.exact import positive, rational, text
 from verify.commands.shared.option import flag, option, options
 from verify.commands.shared.output import pick, print_line
 from verify.commands.shared.proof_output import point_json
+from verify.commands.shared.structure_output import print_structures, structure_json
 from verify.errors import InputError
 from verify.prose import count
 
@@ -77,7 +79,6 @@ def request_from(
     point: str | None = None,
 ) -> "Request":
     """Return the request that these options describe. Raises InputError."""
-    from verify.arithmetic.exact import positive
     from verify.hamiltonians.coordinates import coordinates_in
     from verify.integrators.measures.survey import Request
 
@@ -97,26 +98,24 @@ def state_from(names: Sequence[str], q: str | None, p: str | None) -> tuple[Frac
 
     None if neither is given. Raises InputError.
     """
-    from verify.arithmetic.exact import rational
 
     if p is None and q is None:
         return None
     if p is None or q is None:
         raise InputError("--p, --q", p or q or "", "give both or none")
     degrees, z = len(names) // 2, list[Fraction]()
-    for name, text in (("--p", p), ("--q", q)):
-        numbers = [rational(part.strip(), name) for part in text.split(",")]
+    for name, typed in (("--p", p), ("--q", q)):
+        numbers = [rational(part.strip(), name) for part in typed.split(",")]
         if len(numbers) != degrees:
             problem = (
                 f"has {len(numbers)} numbers; allowed: {degrees}, one for each degree of freedom"
             )
-            raise InputError(name, text, problem)
+            raise InputError(name, typed, problem)
         z += numbers
     return tuple(z)
 
 
 def _parse_point(names: Sequence[str], other: str | None, text: str) -> tuple[Fraction, ...]:
-    from verify.arithmetic.exact import rational
 
     z = tuple(rational(part.strip(), "--point") for part in text.split(","))
     if other is not None or len(z) != len(names):
@@ -126,7 +125,6 @@ def _parse_point(names: Sequence[str], other: str | None, text: str) -> tuple[Fr
 
 
 def _parse_scale(names: Sequence[str], text: str) -> dict[str, Fraction]:
-    from verify.arithmetic.exact import positive
 
     sizes: dict[str, Fraction] = {}
     for part in text.split(","):
@@ -144,7 +142,6 @@ def _parse_scale(names: Sequence[str], text: str) -> dict[str, Fraction]:
 
 def places_json(coordinates: Sequence[str], places: "Sequence[TrialPlace]") -> list[dict[str, str]]:
     """Return the places at which the code was evaluated, each coordinate by its name."""
-    from verify.arithmetic.exact import text
 
     return [
         {
@@ -159,7 +156,6 @@ def places_json(coordinates: Sequence[str], places: "Sequence[TrialPlace]") -> l
 
 def keeps_json(finding: "Finding") -> list[dict[str, Any]]:
     """Return the keys of each structure of the finding, those of a proof among them."""
-    from verify.commands.shared.structure_output import structure_json
 
     return [
         {
@@ -178,7 +174,6 @@ def keeps_json(finding: "Finding") -> list[dict[str, Any]]:
 
 def example_json(example: "Counterexample") -> dict[str, Any]:
     """Return the keys of a counterexample: its place, and what is seen there."""
-    from verify.arithmetic.exact import text
 
     return {
         **point_json(example.z),
@@ -190,7 +185,6 @@ def example_json(example: "Counterexample") -> dict[str, Any]:
 
 def print_keeps(finding: "Finding") -> None:
     """Print each structure of the finding, with what is lost on the way back."""
-    from verify.commands.shared.structure_output import print_structures
 
     for kept in finding.keeps:
         print_structures([kept])

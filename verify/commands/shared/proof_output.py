@@ -57,7 +57,6 @@ def proof_json(
     texts: "Mapping[str, Any]",
     scheme: str,
     proof: "Proof | ProofForEveryH",
-    seconds: str,
     **more_keys: Any,
 ) -> dict[str, Any]:
     """Return the keys of every proof, and `more_keys`, which also replace keys of the same names.
@@ -76,7 +75,6 @@ def proof_json(
         "domain": proof.domain.texts,
         "special_values": [],
         **more_keys,
-        "seconds": seconds,
     }
 
 
