@@ -10,13 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.commands.shared import destinations
 from verify.commands.shared import output as show
-from verify.commands.shared.destinations import (
-    OUT_FOLDER,
-    check_ours,
-    ensure_keepable,
-    ensure_writable,
-)
 from verify.commands.shared.execution_options import kept_tasks, with_placement
 from verify.commands.shared.input import hamiltonian_of, load_target
 from verify.commands.shared.option import flag, option
@@ -47,7 +42,7 @@ _PAGE = "html"
     option("--time", "T", "N is T/H rounded down."),
 )
 @start_options
-@option("-o --output", "DIR", "Write it.  [default: SCENE-report]", type=OUT_FOLDER)
+@option("-o --output", "DIR", "Write it.  [default: SCENE-report]", type=destinations.OUT_FOLDER)
 @click.option(
     "--format",
     "formats",
@@ -62,13 +57,13 @@ _PAGE = "html"
     "--findings",
     "DIR",
     "Of integrators: a note for its maintainers on each mistake that matters, DIR/NAME.md.",
-    type=OUT_FOLDER,
+    type=destinations.OUT_FOLDER,
 )
 @option(
     "--errata",
     "DIR",
     "Of a paper: an erratum to copy, DIR/errata.tex and .md, and a page for an editor.",
-    type=OUT_FOLDER,
+    type=destinations.OUT_FOLDER,
 )
 @flag("--force", "Also into a folder with files that are not ours.")
 @with_placement
@@ -148,7 +143,7 @@ def _check_errata(folder: Path | None, claims: "ClaimsFile | None") -> None:
         return
     if claims is None or not any(claim.reading_of for claim in claims.claims):
         raise InputError("--errata", str(folder), "is of claims that are readings of statements")
-    ensure_writable(folder, "--errata")
+    destinations.ensure_writable(folder, "--errata")
 
 
 def _read_request(scene: str | None, options: Mapping[str, Any]) -> _Request:
@@ -196,7 +191,7 @@ def _verify_scene(
     claims, claim_scenes = (file.claims, file.scenes) if file else ([], {})
     folder = output or Path(f"{request.name}-report")
     _check_folder(folder, force)
-    ensure_keepable(folder, "--output")
+    destinations.ensure_keepable(folder, "--output")
     planned = plan_scenes(scenes)
     add_claims(planned, claims, {scene.name: scene for scene in scenes} | claim_scenes)
     with kept_tasks(planned.tasks, folder / "kept", "--output") as (store, on_result):
@@ -235,7 +230,7 @@ def _verify_integrators(
         raise InputError("--cluster", placement.cluster, "the integrators of others are run here")
     folder = output or Path(f"{scene}-report")
     _check_folder(folder, force)
-    ensure_writable(folder)
+    destinations.ensure_writable(folder)
     command = f"verify report {scene} -o {folder.name}{typed_options}"
     workers = placement.workers or min(_MOST, os.cpu_count() or 1)
     return folder, make_integrators_report(command, _show_progress, workers)
@@ -245,7 +240,7 @@ def _write_notes(result: "Report", folder: Path) -> list[Path]:
     """Write the notes, and return their paths; standard error says why one was not written."""
     from verify.audits.mistake_note import write_findings
 
-    ensure_writable(folder)
+    destinations.ensure_writable(folder)
     paths, unwritten = write_findings(result, folder, _show_progress)
     for name, reason in unwritten.items():
         click.echo(f"{name}.md is not written: {reason}", err=True)
@@ -254,7 +249,7 @@ def _write_notes(result: "Report", folder: Path) -> list[Path]:
 
 def _check_folder(folder: Path, force: bool) -> None:
     if not force:
-        check_ours(folder, advice=", or --force")
+        destinations.check_ours(folder, advice=", or --force")
 
 
 def _show_progress(name: str) -> None:

@@ -9,13 +9,8 @@ import click
 
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import positive, whole
+from verify.commands.shared import destinations
 from verify.commands.shared import output as show
-from verify.commands.shared.destinations import (
-    OUT_FILE,
-    OUT_FOLDER,
-    STANDARD_OUTPUT,
-    ensure_keepable,
-)
 from verify.commands.shared.execution_options import cache_option, counting_bar
 from verify.commands.shared.input import (
     parse_coordinates,
@@ -64,7 +59,7 @@ if TYPE_CHECKING:
     "FILE",
     "Write t, p, q, H − H₀, ΔJ and Λ of the states to this file; - is standard output, which "
     "then gets nothing else.",
-    type=OUT_FILE,
+    type=destinations.OUT_FILE,
 )
 @option(
     "--points",
@@ -76,7 +71,7 @@ if TYPE_CHECKING:
     "--keep",
     "DIR",
     "Keep checkpoints in this folder; the same command continues from them.",
-    type=OUT_FOLDER,
+    type=destinations.OUT_FOLDER,
 )
 def run(
     hamiltonian: "Hamiltonian",
@@ -102,7 +97,7 @@ def run(
     from verify.scenes.results.run import MOST_POINTS
 
     csv_path, points = options.pop("table"), options.pop("points")
-    if csv_path == STANDARD_OUTPUT and click.get_current_context().params["as_json"]:
+    if csv_path == destinations.STANDARD_OUTPUT and click.get_current_context().params["as_json"]:
         raise InputError("--csv", "-", "does not go with --json: both are for standard output")
     if points is not None and csv_path is None:
         raise InputError("--points", points, "goes with --csv")
@@ -126,7 +121,7 @@ def run(
 
     return CommandAnswer(
         lambda: show.run_json(result, measured),
-        show_status if csv_path == STANDARD_OUTPUT else show_run,
+        show_status if csv_path == destinations.STANDARD_OUTPUT else show_run,
         failed=result.status != "finished",
     )
 
@@ -168,7 +163,7 @@ def _run_scheme(
     arithmetic = arithmetic or (AUTO if digits else "float64")
     count = steps_from(steps, time, step_size)
     if keep is not None:
-        ensure_keepable(keep)
+        destinations.ensure_keepable(keep)
     # It names the checkpoints: a command with any other argument must not continue from them.
     run_identity = (
         hamiltonian.formula,
@@ -219,7 +214,7 @@ def _write_orbit(result: "RunResult", path: Path, points: int) -> None:
 
     with counting_bar("stepping again, for the states", result.steps) as advance:
         table = orbit_of(result, points, advance)
-    if path == STANDARD_OUTPUT:
+    if path == destinations.STANDARD_OUTPUT:
         click.echo(_format_csv(table), nl=False)
     else:
         write_atomically(path, _format_csv(table))

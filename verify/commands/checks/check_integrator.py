@@ -4,20 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.checks.check_options import (
-    allow_undecided_option,
-    example_json,
-    is_failure,
-    keeps_json,
-    place_options,
-    places_json,
-    point_option,
-    print_keeps,
-    print_measured,
-    print_notes,
-    request_from,
-    step_size_option,
-)
+from verify.commands.checks import check_options
 from verify.commands.shared import proof_output as show
 from verify.commands.shared.execution_options import clock
 from verify.commands.shared.input import hamiltonian_of, system_options, time_limit_option
@@ -58,16 +45,16 @@ _ORDER_RANGE = click.IntRange(1, 12)
     "The order of a Python function's arguments, such as q,p,h or q,p,t,h; it returns p' and "
     "q' in that order too. By default the names of its arguments decide.",
 )
-@place_options
-@point_option
-@step_size_option
+@check_options.place_options
+@check_options.point_option
+@check_options.step_size_option
 @option("--order", "K", "Claimed order of convergence.", type=_ORDER_RANGE)
 @flag("--area-preserving", "Claimed: det J ≡ 1.")
 @flag("--symplectic", "Claimed: JᵀΩJ ≡ Ω; in the plane det J ≡ 1.")
 @option("--area-order", "K", "Claimed: ΔJ = O(h^K).", type=_ORDER_RANGE)
 @structure_options
 @time_limit_option
-@allow_undecided_option
+@check_options.allow_undecided_option
 @answering
 def check_integrator(
     target: str | None,
@@ -123,7 +110,7 @@ def check_integrator(
     from verify.structures.reading import read_structures
 
     parsed = hamiltonian_of(system, hamiltonian, params, field)
-    request = request_from(parsed.coordinates, **place_texts)
+    request = check_options.request_from(parsed.coordinates, **place_texts)
     if parsed.symbols:
         raise InputError("--param", parsed.symbols[0], "has no value; a step of one's own needs it")
     target_name = command or target or ""
@@ -137,7 +124,7 @@ def check_integrator(
         lambda: _print(parsed, target_name, finding, with_keeps=bool(structures)),
         timed=True,
         # Without a claim there is nothing to leave undecided: only a refutation fails.
-        failed=is_failure(
+        failed=check_options.is_failure(
             [finding.verdict],
             allow_undecided=allow_undecided or (claims == Claims() and not structures),
         ),
@@ -218,9 +205,9 @@ def _json(hamiltonian: "Hamiltonian", target: str, finding: "Finding") -> dict[s
         "delta_j_max": None if finding.largest is None else f"{finding.largest:.6e}",
         "probe_error": None if finding.probe_error is None else f"{finding.probe_error:.1e}",
         "step_size": None if against is None else text(against.h),
-        "counterexample": example and example_json(example),
-        "places": places_json(hamiltonian.coordinates, finding.places),
-        "keeps": keeps_json(finding),
+        "counterexample": example and check_options.example_json(example),
+        "places": check_options.places_json(hamiltonian.coordinates, finding.places),
+        "keeps": check_options.keeps_json(finding),
         **pick(finding, "domain", "faults", "notes"),
     }  # fmt: skip
 
@@ -247,7 +234,7 @@ def _print(
         show.print_head(hamiltonian, target, finding)
         if finding.leading is not None and finding.order is not None and degrees == 1:
             click.echo(f"  ΔJ       ({cut(finding.leading)})·h^{finding.order} + …")
-        print_measured(finding)
+        check_options.print_measured(finding)
     if with_keeps:
-        print_keeps(finding)
-    print_notes(finding)
+        check_options.print_keeps(finding)
+    check_options.print_notes(finding)

@@ -4,18 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.checks.check_options import (
-    allow_undecided_option,
-    is_failure,
-    keeps_json,
-    place_options,
-    places_json,
-    point_option,
-    print_keeps,
-    print_measured,
-    print_notes,
-    request_from,
-)
+from verify.commands.checks import check_options
 from verify.commands.shared.execution_options import clock
 from verify.commands.shared.input import time_limit_option, values_of
 from verify.commands.shared.option import option
@@ -52,11 +41,11 @@ if TYPE_CHECKING:
     "The names of its arguments, flattened, in their order, such as v1,v2,x1,x2; any number. "
     "By default p1, …, pn, q1, …, qn.",
 )
-@place_options
-@point_option
+@check_options.place_options
+@check_options.point_option
 @structure_options
 @time_limit_option
-@allow_undecided_option
+@check_options.allow_undecided_option
 @answering
 def check_map(
     target: str,
@@ -102,7 +91,7 @@ def check_map(
     names = coordinates_in(degrees)
     if coordinates is not None:
         names = coordinates_from(coordinates, "--coordinates")
-    request = request_from(names, **place_texts)
+    request = check_options.request_from(names, **place_texts)
     parameters = {n: rational(x, f"parameter {n}") for n, x in values_of(params).items()}
     function = load(target, "map")
     if coordinates is None:
@@ -127,7 +116,7 @@ def check_map(
         lambda: _json(target, names, finding),
         lambda: _print(target, finding, with_keeps=with_keeps),
         timed=True,
-        failed=is_failure([finding.verdict], allow_undecided=allow_undecided),
+        failed=check_options.is_failure([finding.verdict], allow_undecided=allow_undecided),
     )
 
 
@@ -144,8 +133,8 @@ def _json(target: str, names: tuple[str, ...], finding: "Finding") -> dict[str, 
         },
         "defect_max": None if finding.largest is None else f"{finding.largest:.6e}",
         "probe_error": None if finding.probe_error is None else f"{finding.probe_error:.1e}",
-        "places": places_json(names, finding.places),
-        "keeps": keeps_json(finding),
+        "places": check_options.places_json(names, finding.places),
+        "keeps": check_options.keeps_json(finding),
         **pick(finding, "domain", "faults", "notes"),
     }  # fmt: skip
 
@@ -156,7 +145,7 @@ def _print(target: str, finding: "Finding", *, with_keeps: bool) -> None:
     if finding.how == "proof" and finding.area_preserving is not None:
         click.echo(f"  det J    is {'' if finding.area_preserving else 'not '}1")
     else:
-        print_measured(finding)
+        check_options.print_measured(finding)
     if with_keeps:
-        print_keeps(finding)
-    print_notes(finding)
+        check_options.print_keeps(finding)
+    check_options.print_notes(finding)

@@ -6,6 +6,7 @@ import sympy
 
 from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import decimal, text
+from verify.papers import exact_maps
 from verify.papers.argument import (
     NUMBERS,
     Argument,
@@ -18,24 +19,11 @@ from verify.papers.argument import (
 )
 from verify.papers.differential_polynomials import flow_of_every_hamiltonian
 from verify.papers.elementary_identities import product_of_determinants
-from verify.papers.exact_maps import (
-    RationalPoint,
-    areas,
-    jacobian,
-    next_point,
-    run_symbolically,
-    value,
-)
-from verify.papers.lie_derivative_scheme.examples import (
-    FRICTION,
-    TO_AND_FRO,
-    ExampleMap,
-    duffing_step,
-)
+from verify.papers.lie_derivative_scheme import examples
 from verify.proof.assistant.shipped_theory import ShippedTheorem
 
 _H = Fraction(1, 10)
-_START = RationalPoint(Fraction(1, 2), Fraction(1))
+_START = exact_maps.RationalPoint(Fraction(1, 2), Fraction(1))
 _FLOW = ShippedTheorem("Taylor", "flow_has_no_defect")
 CHAIN = ShippedTheorem("Differential", "slopes_of_composition")
 
@@ -88,14 +76,14 @@ def eq_15(true: int = 1, steps: int = 3) -> Argument:
 
 def mean_of_squares(true: int = 1, steps: int = 3) -> Check:
     """Check the closed form of MSE against det J from its entries; `true` stands for 1."""
-    scheme, point, dets = duffing_step(), _START, []
+    scheme, point, dets = examples.duffing_step(), _START, []
     for _ in range(steps):
         # det J from the entries of J, and not from the closed form of ΔJ, which is under test.
-        a, b, c, d = jacobian(scheme, point, _H)
+        a, b, c, d = exact_maps.jacobian(scheme, point, _H)
         dets.append(a * d - b * c)
-        point = next_point(scheme, point, _H)
+        point = exact_maps.next_point(scheme, point, _H)
     mean = sum(((x - true) ** 2 for x in dets), Fraction(0)) / steps
-    mse = areas(scheme, _START, _H, steps).mse
+    mse = exact_maps.areas(scheme, _START, _H, steps).mse
     return Check(
         f"Duffing, δ = 1, lie2, h = {text(_H)}, (p, q) = {_START}, N = {steps}: the mean of (det J "
         f"− {true})², det J from its entries, and the MSE by the closed form",
@@ -107,7 +95,7 @@ def mean_of_squares(true: int = 1, steps: int = 3) -> Check:
 
 def eq_15_sum(steps: int = 2) -> Argument:
     """Refute that Eq. 15 is the sum of the squares, which is N times as much."""
-    run_areas = areas(duffing_step(), _START, _H, steps)
+    run_areas = exact_maps.areas(examples.duffing_step(), _START, _H, steps)
     total = sum((x * x for x in run_areas.delta_j), Fraction(0))
     differ = Check(
         f"Duffing, δ = 1, lie2, h = {text(_H)}, (p, q) = {_START}, N = {steps}: Σ `ΔJ_k`² and MSE",
@@ -160,11 +148,13 @@ def determinant_of_all_steps(stray: Fraction = Fraction(0)) -> list[Step]:
 
 
 def _composition(steps: int, stray: Fraction) -> Check:
-    scheme = duffing_step()
+    scheme = examples.duffing_step()
     # The composition is differentiated as a whole; the chain rule is what is tested.
-    entries = [sympy.diff(x, z) for x in run_symbolically(scheme, (P, Q), steps) for z in (P, Q)]
-    a, b, c, d = (value(x, _START, _H) for x in entries)
-    det, lam = a * d - b * c + stray, areas(scheme, _START, _H, steps).lam
+    entries = [
+        sympy.diff(x, z) for x in exact_maps.run_symbolically(scheme, (P, Q), steps) for z in (P, Q)
+    ]
+    a, b, c, d = (exact_maps.value(x, _START, _H) for x in entries)
+    det, lam = a * d - b * c + stray, exact_maps.areas(scheme, _START, _H, steps).lam
     return Check(
         f"Duffing, δ = 1, lie2, h = {text(_H)}, (p, q) = {_START}: the determinant of {steps} "
         "steps, composed and then differentiated, and 1 + Λ",
@@ -192,7 +182,8 @@ def smaller_lambda() -> Argument:
 
 
 def smaller_lambda_each_step(
-    to_and_fro: ExampleMap = TO_AND_FRO, friction: ExampleMap = FRICTION
+    to_and_fro: examples.ExampleMap = examples.TO_AND_FRO,
+    friction: examples.ExampleMap = examples.FRICTION,
 ) -> Argument:
     """Refute that a smaller |Λ| means smaller changes of area in every step."""
     pairs = [

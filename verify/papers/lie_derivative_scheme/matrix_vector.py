@@ -7,12 +7,8 @@ import sympy
 from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import decimal, text
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.papers import differential_polynomials
 from verify.papers.argument import NUMBERS, Argument, Check, proof, refutation, same, vanishes
-from verify.papers.differential_polynomials import (
-    Differential,
-    DifferentialFlow,
-    flow_of_every_hamiltonian,
-)
 from verify.papers.exact_maps import RationalPoint, areas, jacobian, map_from_texts, next_point
 from verify.papers.lie_derivative_scheme.examples import duffing, duffing_step
 from verify.schemes.maps.step_map import StepMap
@@ -118,7 +114,7 @@ def _gap(step_map: StepMap, v: RationalPoint, s: Fraction, stray: Fraction) -> F
 
 def near_identity(start: int = 0) -> Argument:
     """Prove that Φ and J of lieη tend to the identity; `start`: the least power of h counted."""
-    flow = flow_of_every_hamiltonian(4)
+    flow = differential_polynomials.flow_of_every_hamiltonian(4)
     ring, at_0 = flow.ring, [flow.ring.zero, flow.ring.zero]
     for i, image in enumerate(flow.lie(3)):
         at_0[i] = ring.powers(image, "h").get(start, ring.zero)
@@ -190,7 +186,7 @@ def near_identity_inference(p_next: str = "-q", q_next: str = "p") -> Argument:
 def euler(power: int = 2) -> Check:
     """Check d/ds [Φ(sz)/s] = [J(sz) sz − Φ(sz)]/s² for a generic Φ; `power` stands for the 2."""
     names = ["u", "s", "F", "F_p", "F_q", "p", "q"]
-    ring = Differential(names)
+    ring = differential_polynomials.Differential(names)
     u, s, f, f_p, f_q, p, q = (ring[name] for name in names)
     # u = 1/s is a variable with a relation, as the ring has no negative powers.
     ring.relate(u * s - 1)  # u = 1/s
@@ -207,10 +203,10 @@ def euler(power: int = 2) -> Check:
 def stays_linear(bent: int = 0) -> Check:
     """Check that X y is linear if y is, for a quadratic form H; `bent` p² is added to y."""
     names = ["p", "q", "a", "b", "c", "alpha", "beta"]
-    ring = Differential(names)
+    ring = differential_polynomials.Differential(names)
     p, q, a, b, c, alpha, beta = (ring[name] for name in names)
     ring.set_coordinates()
-    flow = DifferentialFlow(ring, a * p + b * q, b * p + c * q)
+    flow = differential_polynomials.DifferentialFlow(ring, a * p + b * q, b * p + c * q)
     # f = (−H_q, H_p) is linear for a quadratic H, and a derivative along it keeps the degree.
     derivative = flow.derive(alpha * p + beta * q + bent * p * p)
     linear = (a * beta - b * alpha) * p + (b * beta - c * alpha) * q

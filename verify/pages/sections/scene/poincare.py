@@ -5,13 +5,7 @@ from fractions import Fraction
 from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import captioned_plot
-from verify.pages.sections.orbits_view import (
-    OrbitsView,
-    describe_escape,
-    describe_partly_known,
-    pictures,
-    title_from,
-)
+from verify.pages.sections import orbits_view
 from verify.pages.sections.section import ReportSection
 from verify.pages.sections.table_rows import TableRow
 from verify.pages.text.typography import IS, join_and, map_name, number, step, whole
@@ -19,18 +13,14 @@ from verify.scenes.results.orbit_points import MapSections, PoincareOrbit, Poinc
 from verify.scenes.results.report import SceneResult
 
 
-def _view(scene: SceneResult, anchor: str) -> tuple[OrbitsView, ...]:
+def _view(scene: SceneResult, anchor: str) -> tuple[orbits_view.OrbitsView, ...]:
     return tuple(
         _orbits_view(result, f"passes-{k}-of-{anchor}") for k, result in enumerate(scene.poincare)
     )
 
 
-def _orbits_view(result: PoincareResult, anchor: str) -> OrbitsView:
-    from verify.pages.figures.orbit_points_figure import (
-        count_drawn_looks,
-        draw_passes,
-        select_points,
-    )
+def _orbits_view(result: PoincareResult, anchor: str) -> orbits_view.OrbitsView:
+    from verify.pages.figures import orbit_points_figure
 
     direction = "upwards" if result.rising else "downwards"
     orbits = whole(len(result.sections[0].orbits))
@@ -41,25 +31,25 @@ def _orbits_view(result: PoincareResult, anchor: str) -> OrbitsView:
         f"until t{IS}{number(result.time)}; h{IS}{step(result.step_size)}"
     )
     passes = max(len(o.points) for section in result.sections for o in section.orbits)
-    drawn_count = count_drawn_looks(result.sections)
+    drawn_count = orbit_points_figure.count_drawn_looks(result.sections)
     omissions = f" The first {whole(drawn_count)} passes are drawn." * (drawn_count < passes)
-    outside_count = select_points(result)[1]
+    outside_count = orbit_points_figure.select_points(result)[1]
     if outside_count:
         omissions += (
             f" Points far out, by orbits that escape, are not drawn: {whole(outside_count)}."
         )
     finding = " ".join(map(_finding, result.sections))
-    return OrbitsView(
+    return orbits_view.OrbitsView(
         anchor=anchor,
-        title=title_from(result.source, title),
+        title=orbits_view.title_from(result.source, title),
         finding=finding,
         rows=tuple(
-            TableRow(section.map, _cells(o), describe_escape(o))
+            TableRow(section.map, _cells(o), orbits_view.describe_escape(o))
             for section in result.sections
             for o in section.orbits
         ),
         plot=captioned_plot(
-            lambda: draw_passes(result),
+            lambda: orbit_points_figure.draw_passes(result),
             name=f"points-of-{anchor}",
             lead=lead,
             label=f"{lead}. {finding}",
@@ -82,7 +72,7 @@ def _finding(sections: MapSections) -> str:
     accuracy = f"within {number(error)} (estimated, by a second reckoning)"
     if not partly_known:
         return f"{sentence} every point is known {accuracy}."
-    part = describe_partly_known(orbits, partly_known, "passes")
+    part = orbits_view.describe_partly_known(orbits, partly_known, "passes")
     return f"{sentence} {part}; what is known is so {accuracy}."
 
 
@@ -108,6 +98,6 @@ SECTION = ReportSection(
     title="Where orbits pass a surface",
     anchor="poincare",
     view=_view,
-    pictures=lambda views: pictures(views, 3),
+    pictures=lambda views: orbits_view.pictures(views, 3),
     terms=lambda _: _TERMS,
 )

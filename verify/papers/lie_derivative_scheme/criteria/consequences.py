@@ -3,22 +3,16 @@
 from verify.papers.argument import Argument, Check, proof, refutation, vanishes
 from verify.papers.differential_polynomials import flow_of_every_hamiltonian
 from verify.papers.elementary_identities import product_of_determinants, squares_of_times
+from verify.papers.lie_derivative_scheme import examples
 from verify.papers.lie_derivative_scheme.consistency import small_determinant
 from verify.papers.lie_derivative_scheme.criteria.connections import inequalities_of
-from verify.papers.lie_derivative_scheme.examples import (
-    FRICTION,
-    NOT_UNIFORM,
-    TO_AND_FRO,
-    ExampleMap,
-    shrinks_to,
-)
 from verify.proof.assistant.shipped_theory import ShippedTheorem
 
 _ETAS = range(1, 4)
 _OF_LIE = ShippedTheorem("Theorems", "determinant_of_lie_in_plane")
 
 
-def criterion_2(not_small: ExampleMap = NOT_UNIFORM) -> Argument:
+def criterion_2(not_small: examples.ExampleMap = examples.NOT_UNIFORM) -> Argument:
     """Prove that criterion 2, read uniformly, makes Λ tend to 0."""
     return proof(
         """
@@ -36,7 +30,9 @@ def criterion_2(not_small: ExampleMap = NOT_UNIFORM) -> Argument:
           such as p' = p(1 + q²), q' = q + h, whose Λ over [0, 1] grows beyond all bounds.
           [not_small_changes, squares_of_times, Product.product_above_sum, not_small_check]
         """,
-        inequalities_of=[inequalities_of(example) for example in (FRICTION, TO_AND_FRO)],
+        inequalities_of=[
+            inequalities_of(example) for example in (examples.FRICTION, examples.TO_AND_FRO)
+        ],
         product_of_determinants=product_of_determinants(),
         vanishing=_vanishing(),
         not_small_changes=not_small.changes(),
@@ -71,7 +67,7 @@ def criterion_3(hamiltonian: bool = True) -> Argument:
     )
 
 
-def criterion_3_any_map(friction: ExampleMap = FRICTION) -> Argument:
+def criterion_3_any_map(friction: examples.ExampleMap = examples.FRICTION) -> Argument:
     """Refute it for any map: MSE = o(h), and every area shrinks to a fraction 1/e."""
     return refutation(
         """
@@ -86,5 +82,5 @@ def criterion_3_any_map(friction: ExampleMap = FRICTION) -> Argument:
         """,
         friction_changes=friction.changes(),
         friction_check=friction.check(),
-        shrinks_to=shrinks_to(),
+        shrinks_to=examples.shrinks_to(),
     )

@@ -19,20 +19,14 @@ from verify.papers.argument import (
     vanishes,
 )
 from verify.papers.elementary_identities import mean_of_fourth_powers, squares_of_times
+from verify.papers.lie_derivative_scheme import examples
 from verify.papers.lie_derivative_scheme.consistency import consistent_map
 from verify.papers.lie_derivative_scheme.criteria.connections import shrinking, to_and_fro
-from verify.papers.lie_derivative_scheme.examples import (
-    FRICTION,
-    NOT_UNIFORM,
-    TO_AND_FRO,
-    TO_AND_FRO_ODD,
-    ExampleMap,
-)
 
 _FIXED = (0, 1, 2)  # k
 
 
-def _small_for_each_k(example: ExampleMap) -> Check:
+def _small_for_each_k(example: examples.ExampleMap) -> Check:
     """Check that ΔJ_k/h² does not depend on N for a few fixed k, so that each ΔJ_k is O(h²)."""
     ratios = [{example.run(n).delta_j[k] * n**2 for n in example.steps if n > k} for k in _FIXED]
     return Check(
@@ -44,7 +38,7 @@ def _small_for_each_k(example: ExampleMap) -> Check:
     )
 
 
-def _grows(example: ExampleMap) -> Check:
+def _grows(example: examples.ExampleMap) -> Check:
     """Check that Λ ≥ Σ ΔJ_k ≥ N/8, which is unbounded, and that MSE does not tend to 0."""
     runs = [(n, example.run(n)) for n in example.steps]
     holds = all(
@@ -60,7 +54,9 @@ def _grows(example: ExampleMap) -> Check:
     )
 
 
-def criterion_2_implies_3_pointwise(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
+def criterion_2_implies_3_pointwise(
+    not_uniform: examples.ExampleMap = examples.NOT_UNIFORM,
+) -> Argument:
     """Refute 2 ⇒ 3 for each k alone: each ΔJ_k = O(h²), and MSE → 1/5."""
     return refutation(
         """
@@ -85,8 +81,8 @@ def criterion_2_implies_3_pointwise(not_uniform: ExampleMap = NOT_UNIFORM) -> Ar
 
 
 def criterion_4_and_2_pointwise(
-    not_uniform: ExampleMap = NOT_UNIFORM,
-    alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
+    not_uniform: examples.ExampleMap = examples.NOT_UNIFORM,
+    alternating: Sequence[examples.ExampleMap] = (examples.TO_AND_FRO, examples.TO_AND_FRO_ODD),
 ) -> Argument:
     """Prove that for each k alone 2 does not imply 4, nor 4 imply 2."""
     are_large = [abs(e.run(n).delta_j[0]) ** 2 * n >= 1 for e in alternating for n in e.steps]
@@ -168,7 +164,7 @@ def _steps_of_equivalence(hamiltonian: bool) -> list[Step]:
 
 
 def criterion_4_against_3_smooth(
-    hamiltonian: bool = False, friction: ExampleMap = FRICTION
+    hamiltonian: bool = False, friction: examples.ExampleMap = examples.FRICTION
 ) -> Argument:
     """Prove for steps z + hg + h²r that 4 on every [0, t] implies 3, but not vice versa."""
     return proof(
