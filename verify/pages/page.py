@@ -59,7 +59,7 @@ def page_view(report: Report) -> PageView:
         **vars(contents),
         first=first_screen(report, contents.claims, sections),
         sections=sections,
-        terms=legend.ALWAYS | terms(sections),
+        terms=legend.terms_of("page") | terms(sections),
     )
 
 

@@ -2,12 +2,11 @@
 
 from fractions import Fraction
 
-from markupsafe import Markup
-
 from verify.pages.figures.captioned_plot import captioned_plot
 from verify.pages.sections import orbits_view
 from verify.pages.sections.section import ReportSection
 from verify.pages.sections.table_rows import TableRow
+from verify.pages.text.legend import terms_of
 from verify.pages.text.typography import IS, join_and, map_name, number, step, whole
 from verify.scenes.results.orbit_points import MapSections, PoincareOrbit, PoincareResult
 from verify.scenes.results.report import SceneResult
@@ -82,22 +81,11 @@ def _cells(orbit: PoincareOrbit) -> tuple[str, ...]:
     return q, p, number(orbit.energy), *counts, number(orbit.error)
 
 
-_TERMS = {
-    "Poincaré section": Markup(
-        "The states of an orbit each time it passes a surface, here that of a coordinate’s value, "
-        "in the same direction. In two degrees of freedom two of their coordinates tell them, at a "
-        "given energy: they are points of one closed curve where a second quantity is kept, and a "
-        "sea of points where the motion is chaotic. A scheme’s orbit passes in the step from z to "
-        "Φ_h(z) at that Φ_θ(z) which lies on the surface."
-    )
-}
-
-
 SECTION = ReportSection(
     order=26,
     title="Where orbits pass a surface",
     anchor="poincare",
     view=_view,
     pictures=lambda views: orbits_view.pictures(views, 3),
-    terms=lambda _: _TERMS,
+    terms=lambda _: terms_of("poincare"),
 )

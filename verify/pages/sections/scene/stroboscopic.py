@@ -2,8 +2,6 @@
 
 from collections.abc import Iterator
 
-from markupsafe import Markup
-
 from verify.pages.figures.captioned_plot import captioned_plot
 from verify.pages.sections.orbits_view import (
     OrbitsView,
@@ -14,6 +12,7 @@ from verify.pages.sections.orbits_view import (
 )
 from verify.pages.sections.section import ReportSection
 from verify.pages.sections.table_rows import TableRow
+from verify.pages.text.legend import terms_of
 from verify.pages.text.typography import IS, join_and, number, step, whole
 from verify.scenes.results.orbit_points import StroboscopicResult
 from verify.scenes.results.report import SceneResult
@@ -83,22 +82,13 @@ def _rows(result: StroboscopicResult) -> Iterator[TableRow]:
             yield TableRow(section.scheme, cells, describe_escape(orbit))
 
 
-_TERMS = {
-    "Stroboscopic section": Markup(
-        "The states of an orbit once in each period of H, all at the same phase of the drive: "
-        "points of one closed curve where the motion is regular, and a sea of points where it is "
-        "chaotic."
-    )
-}
-
-
 SECTION = ReportSection(
     order=25,
     title="Once in each period",
     anchor="stroboscopic",
     view=_view,
     pictures=lambda views: pictures(views, 3),
-    terms=lambda _: _TERMS,
+    terms=lambda _: terms_of("stroboscopic"),
     shows="stroboscopic",
     matching_plots=lambda views, label: ((x.plot, x.finding) for x in views if x.source == label),
 )

@@ -162,18 +162,11 @@ def _seconds(seconds: float | None) -> str:
     return "–" if seconds is None else number(f"{seconds:.2e}")
 
 
-_TERMS = {
-    "Limited by rounding": Markup(
-        "The float64 run differs from the same steps in exact arithmetic by a part of its error "
-        "that counts: smaller steps make it no better. Such points are hollow, and no slope is "
-        "fitted to them."
-    )
-}
 SECTION = ReportSection(
     order=10,
     title="Error against run time",
     anchor="work",
     view=_view,
     pictures=lambda view: [Picture((5,), plot) for plot in view.plots],
-    terms=lambda _: _TERMS | legend.RAN,
+    terms=lambda _: legend.terms_of("work-precision") | legend.terms_of_runs(),
 )

@@ -6,11 +6,10 @@ from decimal import Decimal
 from fractions import Fraction
 from math import isfinite
 
-from markupsafe import Markup
-
 from verify.pages.figures.captioned_plot import Plot, captioned_plot, lg, round_to_few_digits
 from verify.pages.sections import table_rows
 from verify.pages.sections.section import ReportSection
+from verify.pages.text.legend import terms_of
 from verify.pages.text.typography import NBSP, between, join_and, number, start, step, whole
 from verify.pages.text.typography import power_of_h as _h
 from verify.scenes.results.growth import AverageResult, GrowthLawResult, PredictionResult
@@ -208,12 +207,6 @@ def _row(p: PredictionResult) -> table_rows.TableRow:
     return table_rows.TableRow(step(p.step_size), (whole(p.steps), *cells))
 
 
-_TERMS = {
-    "Growth law": Markup(
-        "log(1 + Λ) as a bounded part, a secular part that grows with T, and a remainder of proved "
-        "order. X is the derivative along the exact flow; [F] is F at the end of the run minus F "
-        "at its start; X G is the leading coefficient of ΔJ; ⟨g⟩ is the time average of g along "
-        "the exact orbit, and B the bounded rest, X B = g − ⟨g⟩."
-    )
-}
-SECTION = ReportSection(order=60, title="Growth law of Λ", view=_view, terms=lambda _: _TERMS)
+SECTION = ReportSection(
+    order=60, title="Growth law of Λ", view=_view, terms=lambda _: terms_of("growth")
+)

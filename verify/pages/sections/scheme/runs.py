@@ -110,4 +110,6 @@ def _row(run: RunResult, names: Sequence[str]) -> table_rows.TableRow:
     )
 
 
-SECTION = ReportSection(order=80, view=_view, terms=lambda _: legend.RAN, takes_field=True)
+SECTION = ReportSection(
+    order=80, view=_view, terms=lambda _: legend.terms_of_runs(), takes_field=True
+)

@@ -198,26 +198,17 @@ def _format_law(exponent: str | None, name: str) -> str:
 
 
 _CAUSES = {"motion": "the motion’s", "scheme": "the scheme’s", "undecided": "whose, undecided"}
-_CROSSOVER_TERMS = {
-    "Crossover h*": Markup(
-        "The step size below which rounding is larger than truncation, interpolated in logarithms "
-        "between the two step sizes that bracket it. Smaller steps than h* make Λ no better."
-    )
-}
 _TERMS = {
-    AREA: legend.SEPARATED | _CROSSOVER_TERMS | legend.RAN,
-    SYMPLECTIC: {"W": legend.FORM_TERMS["W"]} | legend.FORM_SEPARATION_TERMS | legend.RAN,
+    AREA: legend.terms_of("separation") | legend.terms_of("crossover"),
+    SYMPLECTIC: {"W": legend.terms_of("form")["W"]} | legend.terms_of("separation-of-form"),
 }
 
 
 def _terms(views: Sequence[SeparationView]) -> Mapping[str, Markup]:
-    structures = {view.structure for view in views}
-    return {
-        k: x
-        for structure, structure_terms in _TERMS.items()
-        if structure in structures
-        for k, x in structure_terms.items()
-    }
+    terms: dict[str, Markup] = {}
+    for structure in dict.fromkeys(view.structure for view in views):
+        terms |= _TERMS[structure]
+    return terms | legend.terms_of_runs()
 
 
 SECTION = ReportSection(
