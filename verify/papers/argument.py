@@ -5,9 +5,12 @@ step is marked with what checked it in full: exact algebra or enclosures of this
 of the argument's table, or theorems of the shipped theory for Rocq. A step that is only tried on
 examples, or stands on paper alone, counts as not checked by machine.
 
-`proof` and `refutation` read an argument from one text, in which steps name their checks:
+The words of a module's arguments stand in the Markdown file beside it, each below the name of its
+function, and their steps name the checks that the function computes (`ArgumentTexts`):
 
-    The verdict's evidence, in the syntax of `read_prose`, with formulas quoted.
+    ## eq_0
+
+    The verdict's evidence, in the syntax of `read_prose`, with formulas quoted, and {value}.
 
     The setting and notation, if there is any to say.
 
@@ -18,15 +21,17 @@ examples, or stands on paper alone, counts as not checked by machine.
     A remark after the proof, if there is one.
 
 A name with a point is a theorem of the shipped theory for Rocq; the others are arguments of the
-call: a check, several, or the steps that stand there.
+call: a check, several, or the steps that stand there; and texts, which take the places of their
+names in braces, as another text of the file does.
 """
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property
 from itertools import groupby
-from typing import Any, TypeAlias
+from pathlib import Path
+from typing import Any
 
 import sympy
 
@@ -43,6 +48,7 @@ NUMBERS = "exact numbers"
 BALLS = "enclosures"
 _PARAGRAPH_END = re.compile(r"\n\s*\n")
 _ITEM = re.compile(r"^\s*- ", re.MULTILINE)
+_HEADING = re.compile(r"^## (\w+)$", re.MULTILINE)
 _LIST = r"[\w.]+(?:, [\w.]+)*"
 _MARKS = re.compile(rf"(.*?) ?(?:\[({_LIST})?(?:;? ?tried ({_LIST}))?\])?")  # at a step's end
 _NAME = re.compile(r"[\w.]+")
@@ -81,7 +87,7 @@ def same(
     return Check(statement, not wrong, f"`{to_text(wrong[0])}`" if wrong else value)
 
 
-Checks: TypeAlias = "Check | Iterable[Check | ShippedTheorem | Step]"
+Checks = Check | Iterable["Check | ShippedTheorem | Step"]
 
 
 # -- arguments ------------------------------------------------------------------------------------
@@ -198,8 +204,41 @@ def _read_argument(verdict: Verdict, text: str, /, **checks: Checks) -> Argument
     return _argument(verdict, evidence, steps(others[at], **checks), setting=setting, remark=remark)
 
 
-proof = partial(_read_argument, Verdict.PROVED)
-refutation = partial(_read_argument, Verdict.REFUTED)
+class ArgumentTexts:
+    """The words of a module's arguments, in the Markdown file beside the module."""
+
+    def __init__(self, module_file: str) -> None:
+        self._path = Path(module_file).with_suffix(".md")
+
+    def proof(self, name: str, /, **checks: Checks | str) -> Argument:
+        """Return the argument below this heading, with the verdict PROVED if all checks hold."""
+        text, other_checks = self._fill(name, checks)
+        return _read_argument(Verdict.PROVED, text, **other_checks)
+
+    def refutation(self, name: str, /, **checks: Checks | str) -> Argument:
+        """Return the argument below this heading, with the verdict REFUTED if all checks hold."""
+        text, other_checks = self._fill(name, checks)
+        return _read_argument(Verdict.REFUTED, text, **other_checks)
+
+    def steps(self, name: str, /, **checks: Checks | str) -> list[Step]:
+        """Return the steps below this heading, for an argument that several have in common."""
+        text, other_checks = self._fill(name, checks)
+        return steps(text, **other_checks)
+
+    @cached_property
+    def _texts(self) -> dict[str, str]:
+        parts = _HEADING.split(self._path.read_text(encoding="utf-8"))[1:]
+        return {name: text.strip() for name, text in zip(parts[::2], parts[1::2], strict=True)}
+
+    def _fill(self, name: str, checks: Mapping[str, Checks | str]) -> tuple[str, dict[str, Checks]]:
+        """Return the text, with other texts in the places of their names, and the checks."""
+        text = self._texts[name]
+        values = {key: value for key, value in checks.items() if isinstance(value, str)}
+        if unnamed := [key for key in values if f"{{{key}}}" not in text]:
+            raise ValueError(f"{name} has no place for {', '.join(unnamed)}")
+        for key, value in (self._texts | values).items():
+            text = text.replace(f"{{{key}}}", value)
+        return text, {key: x for key, x in checks.items() if not isinstance(x, str)}
 
 
 def checks_of(steps: Iterable[Step]) -> list[Check]:

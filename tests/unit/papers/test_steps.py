@@ -1,16 +1,28 @@
 """The steps of arguments: each is marked, in full or as not checked, and no mark says too much."""
 
 import re
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from verify.papers import check_theorem, names
-from verify.papers.argument import BALLS, NUMBERS, Check, Step, checks_of, proof, steps
+from verify.papers import check_theorem, lie_derivative_scheme, names
+from verify.papers.argument import (
+    BALLS,
+    NUMBERS,
+    ArgumentTexts,
+    Check,
+    Step,
+    _read_argument,
+    checks_of,
+    steps,
+)
 from verify.prose import Display, Formula
 from verify.verdict import Verdict
 
 ONE, TWO, THREE = (Check(name, True, "0") for name in ("one", "two", "three"))
+proof = partial(_read_argument, Verdict.PROVED)
 RUN = Check("a run", True, "0", NUMBERS)
 BALL = Check("a ball", True, "0", BALLS)
 _MARK = re.compile(
@@ -108,7 +120,9 @@ def test_steps_of_another_text_stand_where_they_are_named() -> None:
 
 
 def test_a_setting_stands_before_the_steps_and_a_remark_after_them() -> None:
-    made = proof("because\n\nLet it\nbe.\n\n- a [one]\n\nSo it is.", one=ONE)
+    made = _read_argument(
+        Verdict.PROVED, "because\n\nLet it\nbe.\n\n- a [one]\n\nSo it is.", one=ONE
+    )
     assert (str(made.given), str(made.remark)) == ("Let it be.", "So it is.")
 
 
@@ -121,7 +135,9 @@ def test_a_check_that_no_step_names_is_an_error_and_so_is_a_name_without_a_check
 
 def test_a_failed_example_leaves_nothing_of_an_argument() -> None:
     wrong = Check("tried", False, "1", NUMBERS)
-    made = proof("because\n\n- a [one]\n- b [tried wrong]", one=ONE, wrong=wrong)
+    made = _read_argument(
+        Verdict.PROVED, "because\n\n- a [one]\n- b [tried wrong]", one=ONE, wrong=wrong
+    )
     assert (made.verdict, made.steps, made.checked_by) == (Verdict.UNDECIDED, (), ())
 
 
@@ -139,3 +155,44 @@ def test_how_many_steps_a_machine_checked_is_said() -> None:
     assert said("- a [tried one]") == (
         "by hand: an argument in 1 step, none checked by machine, 1 not"
     )
+
+
+# -- texts beside a module ------------------------------------------------------------------------
+
+
+@pytest.fixture
+def texts(tmp_path: Path) -> ArgumentTexts:
+    words = """# A paper\n\n## eq_1\n\n{why} and {size}, `e_{k+1}`\n\n- a [one]\n
+## why\n\nsince it is\n\n## _lemma\n\n- c [one]\n"""
+    (tmp_path / "eq.md").write_text(words, encoding="utf-8")
+    return ArgumentTexts(str(tmp_path / "eq.py"))
+
+
+def test_words_are_read_below_the_name_of_a_function(texts: ArgumentTexts) -> None:
+    made = texts.proof("eq_1", one=ONE, size="2")
+    assert str(made.evidence) == "since it is and 2, e_{k+1}"
+    assert (made.verdict, str(made.steps[0].text)) == (Verdict.PROVED, "a")
+    assert texts.refutation("eq_1", one=ONE, size="2").verdict is Verdict.REFUTED
+    assert texts.steps("_lemma", one=ONE) == [Step("c", (ONE,))]
+
+
+def test_a_value_without_a_place_is_an_error_and_so_is_a_name_without_words(
+    texts: ArgumentTexts,
+) -> None:
+    with pytest.raises(ValueError, match="no place for length"):
+        texts.proof("eq_1", one=ONE, size="2", length="3")
+    with pytest.raises(KeyError, match="eq_3"):
+        texts.proof("eq_3")
+
+
+TEXTS = sorted(Path(lie_derivative_scheme.__file__).parent.rglob("*.md"))
+
+
+@pytest.mark.parametrize("path", TEXTS, ids=lambda path: path.stem)
+def test_each_text_of_the_paper_is_used(path: Path) -> None:
+    """Those of functions by their names, and those that others include in braces."""
+    words, code = path.read_text("utf-8"), path.with_suffix(".py").read_text("utf-8")
+    names = re.findall(r"^## (\w+)$", words, re.MULTILINE)
+    assert names
+    for name in names:
+        assert f'("{name}"' in re.sub(r"\(\s+", "(", code) or f"{{{name}}}" in words, name

@@ -8,11 +8,13 @@ from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import decimal, text
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.papers import differential_polynomials
-from verify.papers.argument import NUMBERS, Argument, Check, proof, refutation, same, vanishes
+from verify.papers.argument import NUMBERS, Argument, ArgumentTexts, Check, same, vanishes
 from verify.papers.exact_maps import RationalPoint, areas, jacobian, map_from_texts, next_point
 from verify.papers.lie_derivative_scheme.examples import duffing, duffing_step
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
+
+_TEXTS = ArgumentTexts(__file__)
 
 H = Fraction(1, 10)
 POINT = RationalPoint(p=Fraction(0), q=Fraction(1))
@@ -28,30 +30,16 @@ def eq_12(hamiltonian: Hamiltonian | None = None, point: RationalPoint = POINT) 
         f"{product} against {image}",
         NUMBERS,
     )
-    return refutation(
-        f"""
-        for the Duffing oscillator (δ = 1, h = {text(H)}) at (p, q) = {point}, J z = {product} but
-        z' = {image}; it holds for all h only where H is quadratic
-
-        - For the Duffing oscillator (δ = 1, h = {text(H)}) at (p, q) = {point} J z = {product} and
-          z' = {image}: Eq. 12 is false as a product of a matrix and a vector. [at_a_point]
-        - Of which H is it true? That J(z) z = Φ(z) for all z means that Φ is homogeneous of degree
-          1 (Euler): ``d/ds Φ(sz)/s = (J(sz) sz − Φ(sz))/s^2 = 0``. [euler]
-        - If it holds for all small h on a disc around the origin, then the coefficient f of h in
-          Φ(z) = z + hf(z) + … is homogeneous of degree 1 too. It is differentiable at the origin,
-          so ``f(z) = lim_{{s→0}} f(sz)/s = f'(0) z``, and H is a quadratic form plus a constant.
-        - Conversely, for a quadratic form every Xⁿz is linear, and Eq. 12 is an identity.
-          [stays_linear, check_quadratic_form]
-
-        So Eq. 12 is false as a product for every other H that is smooth around the origin, the
-        Duffing oscillator with δ ≠ 0 and the pendulum among them. What holds is its tangent form,
-        `δz_{{k+1}}` = `J_k` `δz_k` for infinitesimal differences, and that is all that Eq. 13–16
-        use: they need det `J_k` only.
-        """,
+    return _TEXTS.refutation(
+        "eq_12",
         at_a_point=at_a_point,
         euler=euler(),
         stays_linear=stays_linear(),
         check_quadratic_form=_check_quadratic_form(),
+        h=text(H),
+        point=str(point),
+        product=str(product),
+        image=str(image),
     )
 
 
@@ -85,22 +73,7 @@ def eq_12_tangent(stray: Fraction = Fraction(0)) -> Argument:
         texts,
         NUMBERS,
     )
-    return proof(
-        """
-        `δz_{k+1}` = `J_k` `δz_k` for infinitesimal differences is what a Jacobian matrix is, for
-        every scheme that is differentiable; Eq. 13–16 use no more
-
-        - That Φ is differentiable at `z_k` says ``Φ(z_k + δz) = Φ(z_k) + J_k δz + o(|δz|)``, and a
-          smooth function is, with its derivatives as the entries of `J_k`; so is every lieη of a
-          smooth H. [Smooth.derivation_has_slopes]
-        - Where Φ has second derivatives the rest is O(|δz|²) (Taylor). [tried example]
-
-        The next sentence of the paper calls `J_k` a tool for representing local linear
-        transformations, and all that follows is made of det `J_k`; nothing needs Eq. 12 as a
-        product of `J_k` and `z_k` itself.
-        """,
-        example=example,
-    )
+    return _TEXTS.proof("eq_12_tangent", example=example)
 
 
 def _gap(step_map: StepMap, v: RationalPoint, s: Fraction, stray: Fraction) -> Fraction:
@@ -123,20 +96,7 @@ def near_identity(start: int = 0) -> Argument:
         at_0[0] - ring["p"],
         at_0[1] - ring["q"],
     )
-    return proof(
-        """
-        by Eq. 2 the step is z + h f(z) + O(h²), which tends to z as h → 0, and its Jacobian to the
-        unit matrix, uniformly on compact sets
-
-        - Eq. 2 is a polynomial in h whose term without h is z: ``Φ(z) = z + Σ_{n=1}^{η} h^n/n! X^n
-          z``. [without_h]
-        - For a smooth H its coefficients and their derivatives are bounded on compact sets, so Φ →
-          id and J → 1 uniformly there.
-        - It follows that ΔJ → 0, too: it is ``h^(η+1)`` times a polynomial in h.
-          [Theorems.determinant_of_lie_in_plane]
-        """,
-        without_h=without_h,
-    )
+    return _TEXTS.proof("near_identity", without_h=without_h)
 
 
 def near_identity_inference(p_next: str = "-q", q_next: str = "p") -> Argument:
@@ -164,22 +124,13 @@ def near_identity_inference(p_next: str = "-q", q_next: str = "p") -> Argument:
         ", ".join(map(str, images)),
         NUMBERS,
     )
-    return refutation(
-        f"""
-        ΔJ → 0 alone does not give it: p' = `{p_next}`, q' = `{q_next}` has ΔJ ≡ 0 for all h and is
-        not near the identity; the scheme is near-identity because Eq. 2 is z + O(h)
-
-        - The rotation by a right angle, p' = −q, q' = p, has det J = 1 for every h. [for_every_h,
-          along_a_run]
-        - It moves (0, 1) to (−1, 0), for every h. [moves]
-
-        A determinant near 1 says that areas are nearly kept, not that points are. The conclusion is
-        true of lieη for another reason: by Eq. 2 Φ(z) = z + hf(z) + O(h²), which tends to z as h →
-        0, and J to the unit matrix. From that ΔJ → 0 follows, and not the other way round.
-        """,
+    return _TEXTS.refutation(
+        "near_identity_inference",
         for_every_h=for_every_h,
         along_a_run=along_a_run,
         moves=moves,
+        p_next=p_next,
+        q_next=q_next,
     )
 
 

@@ -8,20 +8,13 @@ t ≤ T, at once.
 from collections.abc import Sequence
 from fractions import Fraction
 
-from verify.papers.argument import (
-    NUMBERS,
-    Argument,
-    Check,
-    Step,
-    proof,
-    refutation,
-    steps,
-    vanishes,
-)
+from verify.papers.argument import NUMBERS, Argument, ArgumentTexts, Check, Step, vanishes
 from verify.papers.elementary_identities import mean_of_fourth_powers, squares_of_times
 from verify.papers.lie_derivative_scheme import examples
 from verify.papers.lie_derivative_scheme.consistency import consistent_map
 from verify.papers.lie_derivative_scheme.criteria.connections import shrinking, to_and_fro
+
+_TEXTS = ArgumentTexts(__file__)
 
 _FIXED = (0, 1, 2)  # k
 
@@ -58,20 +51,8 @@ def criterion_2_implies_3_pointwise(
     not_uniform: examples.ExampleMap = examples.NOT_UNIFORM,
 ) -> Argument:
     """Refute 2 ⇒ 3 for each k alone: each ΔJ_k = O(h²), and MSE → 1/5."""
-    return refutation(
-        """
-        for p' = p(1 + q²), q' = q + h from (0, 0) each `ΔJ_k` = (kh)² = O(h²), but over [0, 1] MSE
-        → 1/5; for a step that depends smoothly on (p, q, h), as lieη does, the two senses agree
-
-        - With `q_k` = kh one has ``ΔJ_k = (kh)^2``, for each fixed k a higher-order infinitesimal
-          of h. [not_uniform_changes, small_for_each_k]
-        - But the last steps of [0, 1] have kh near 1, and ``MSE = (1/N) Σ_{k} (kh)^4 → 1/5``.
-          [mean_of_fourth_powers, not_uniform_check, grows]
-
-        For a scheme whose step depends smoothly on (p, q, h) this cannot happen: if ΔJ = o(h) at
-        every point of a compact set, its Taylor coefficients of h⁰ and h¹ vanish there, and ΔJ =
-        O(h²) uniformly.
-        """,
+    return _TEXTS.refutation(
+        "criterion_2_implies_3_pointwise",
         not_uniform_changes=not_uniform.changes(),
         small_for_each_k=_small_for_each_k(not_uniform),
         mean_of_fourth_powers=mean_of_fourth_powers(),
@@ -92,18 +73,8 @@ def criterion_4_and_2_pointwise(
         f"{len(are_large)} step sizes, exactly",
         NUMBERS,
     )
-    return proof(
-        """
-        read for each fixed k, criterion 2 does not imply criterion 4 (p' = p(1 + q²), q' = q + h),
-        nor 4 criterion 2; but neither map is lieη, for which the two senses agree and 2 implies 4
-
-        - 2 and not 4: for p' = p(1 + q²), q' = q + h from (0, 0) each `ΔJ_k` = (kh)² = O(h²).
-          [not_uniform_changes, small_for_each_k]
-        - But over [0, 1] ``Λ = Π_{k} (1 + (kh)^2) − 1 ≥ Σ_{k} (kh)^2 ≥ N/8``.
-          [Product.product_above_sum, squares_of_times, not_uniform_check, grows]
-        - 4 and not 2: p' = −p (1 − √h q)/(1 + √h q), q' = −q from q = 1 has Λ → 0 and ``|ΔJ_0| =
-          2√h/(1 + √h) ≥ √h``. [to_and_fro, at_first]
-        """,
+    return _TEXTS.proof(
+        "criterion_4_and_2_pointwise",
         not_uniform_changes=not_uniform.changes(),
         small_for_each_k=_small_for_each_k(not_uniform),
         squares_of_times=squares_of_times(),
@@ -119,47 +90,21 @@ def criterion_4_against_2_smooth(hamiltonian: bool = False) -> Argument:
 
     `hamiltonian`: as for `_steps_for_every_time`.
     """
-    return refutation(
-        f"""
-        {_EQUIVALENT}: 4 is as strong as 2, and no stronger
-
-        {_SETTING}
-
-        - [steps_of_equivalence]
-        """,
-        steps_of_equivalence=_steps_of_equivalence(hamiltonian),
+    return _TEXTS.refutation(
+        "criterion_4_against_2_smooth", steps_of_equivalence=_steps_of_equivalence(hamiltonian)
     )
 
 
 def criterion_4_equals_2(hamiltonian: bool = False) -> Argument:
     """Prove that 4 on every [0, t] and 2 are equivalent for steps z + hg + h²r."""
-    return proof(
-        f"""
-        {_EQUIVALENT}
-
-        {_SETTING}
-
-        - [steps_of_equivalence]
-        """,
-        steps_of_equivalence=_steps_of_equivalence(hamiltonian),
+    return _TEXTS.proof(
+        "criterion_4_equals_2", steps_of_equivalence=_steps_of_equivalence(hamiltonian)
     )
 
 
-_SETTING = "Let the orbit of z' = g(z) exist on [0, T]."
-_EQUIVALENT = (
-    "for steps z + hg(z) + h²r(z, h) with smooth g and r, criterion 4 on [0, t] for every t ≤ T "
-    "implies criterion 2, and criterion 2 implies it"
-)
-
-
 def _steps_of_equivalence(hamiltonian: bool) -> list[Step]:
-    return steps(
-        """
-        - [steps_for_every_time]
-        - Criterion 2 implies criterion 4 on every [0, t]: ``|Λ| ≤ e^(t m/h) − 1 → 0``, m = max
-          |`ΔJ_k`|. [Theorems.error_over_many_steps]
-        """,
-        steps_for_every_time=_steps_for_every_time(hamiltonian),
+    return _TEXTS.steps(
+        "_steps_of_equivalence", steps_for_every_time=_steps_for_every_time(hamiltonian)
     )
 
 
@@ -167,18 +112,8 @@ def criterion_4_against_3_smooth(
     hamiltonian: bool = False, friction: examples.ExampleMap = examples.FRICTION
 ) -> Argument:
     """Prove for steps z + hg + h²r that 4 on every [0, t] implies 3, but not vice versa."""
-    return proof(
-        f"""
-        for steps z + hg(z) + h²r(z, h) with smooth g and r, criterion 4 on [0, t] for every t ≤ T
-        implies criterion 3, which always holds then, and is not implied by it
-
-        {_SETTING}
-
-        - [steps_for_every_time]
-        - Criterion 3 always holds: the mean of `ΔJ_k²` is at most its maximum, O(h²).
-          [Sums.sum_of_less]
-        - Criterion 4 does not hold for the oscillator with friction, where div g = −1. [shrinking]
-        """,
+    return _TEXTS.proof(
+        "criterion_4_against_3_smooth",
         steps_for_every_time=_steps_for_every_time(hamiltonian),
         shrinking=shrinking(friction),
     )
@@ -193,14 +128,8 @@ def _steps_for_every_time(hamiltonian: bool) -> list[Step]:
     ring = next(iter(powers.values())).context()
     divergence = ring.gens()[ring.names().index("a_p")] + ring.gens()[ring.names().index("b_q")]
     none = divergence - divergence
-    return steps(
-        """
-        - ``ΔJ = h div g + O(h^2)``, for any g. [vanishes]
-        - So Σ log(1 + `ΔJ_k`) = Σ h div g(`z_k`) + O(h), and, as Φ converges to the orbit, over [0,
-          t] ``Λ → e^(∫_0^t div g dt) − 1``.
-        - If that is 0 for every t ≤ T, then div g = 0 along the orbit, div g(`z_k`) = O(h), and
-          `ΔJ_k` = O(h²) uniformly: criteria 2 and 3 follow.
-        """,
+    return _TEXTS.steps(
+        "_steps_for_every_time",
         vanishes=vanishes(
             "ΔJ of a generic map z + hg + h²r is h div g + O(h²), g generic",
             powers.get(1, none) - divergence,
