@@ -7,13 +7,8 @@ from typing import Any
 from verify.arithmetic.exact import decimal, known_text
 from verify.scenes.results import separation_parts
 from verify.scenes.results.bounded_value import FormValue, Value
+from verify.studies.separation import growth_fits
 from verify.studies.separation.chain import Chain, Trail
-from verify.studies.separation.growth_fits import (
-    classify_motion,
-    fit_growth,
-    fit_power_law,
-    select_log_spaced,
-)
 from verify.studies.separation.way import Size
 
 SHOWN = 7  # digits of the values in figures
@@ -48,7 +43,7 @@ class Split:
     def summary(self) -> dict[str, Any]:
         """The greatest sizes at any checkpoint, the growth of rounding, and the kind of bounds."""
         names = ("total", *self.chains[0].parts)
-        fits = {n: fit_growth(self.marks, self.tops[n], self.noise[n]) for n in names}
+        fits = {n: growth_fits.fit_growth(self.marks, self.tops[n], self.noise[n]) for n in names}
         enclosed = all(x.kind == "enclosed" for x in self.chains)
         return {
             "largest": {n: self.text(n, self.tops[n].largest) for n in ("truncation", "total")},
@@ -58,7 +53,9 @@ class Split:
 
     def series(self) -> Iterator[tuple[int, dict[str, str]]]:
         """Yield some checkpoints, and each quantity there."""
-        for k in select_log_spaced(range(len(self.marks)), self.marks, _SERIES_CHECKPOINTS):
+        for k in growth_fits.select_log_spaced(
+            range(len(self.marks)), self.marks, _SERIES_CHECKPOINTS
+        ):
             yield k, {name: self.text(name, self.tops[name][k]) for name in self.names}
 
     def text(self, name: str, x: Fraction) -> str:
@@ -99,9 +96,9 @@ def _evaluate_form(
 ) -> separation_parts.FormEvaluation:
     values = split.values(digits).items()
     parts = {_name_in_degrees(name): FormValue.from_entries(entries) for name, entries in values}
-    motion = classify_motion(split.marks, [x.norm for x in sizes])
+    motion = growth_fits.classify_motion(split.marks, [x.norm for x in sizes])
     name = "lambda_working"
-    law = fit_power_law(split.marks, split.tops[name], split.noise[name], motion)
+    law = growth_fits.fit_power_law(split.marks, split.tops[name], split.noise[name], motion)
     return separation_parts.FormEvaluation(
         parts=separation_parts.FormPartsInTime(**parts)
         if "clock" in parts
