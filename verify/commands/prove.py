@@ -8,12 +8,7 @@ import click
 
 from verify.commands.shared import proof_output as show
 from verify.commands.shared.destinations import OUT_FILE
-from verify.commands.shared.input import (
-    every_options,
-    one_or_every,
-    scheme_option,
-    system_options,
-)
+from verify.commands.shared.input import every_options, one_or_every, scheme_option, system_options
 from verify.commands.shared.option import flag, option
 from verify.commands.shared.output import CommandAnswer, answering, cut, pick, print_line
 from verify.commands.shared.structure_options import compose_scheme, split_option, structure_options

@@ -20,11 +20,7 @@ from verify.commands.shared.input import (
 )
 from verify.commands.shared.option import option
 from verify.commands.shared.output import CommandAnswer, answering
-from verify.commands.shared.structure_options import (
-    compose_scheme,
-    split_option,
-    structure_options,
-)
+from verify.commands.shared.structure_options import compose_scheme, split_option, structure_options
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:

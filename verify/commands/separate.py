@@ -25,13 +25,7 @@ from verify.commands.shared.input import (
     with_kept_hamiltonian,
 )
 from verify.commands.shared.option import option
-from verify.commands.shared.output import (
-    CommandAnswer,
-    answering,
-    pick,
-    plain_json,
-    print_once,
-)
+from verify.commands.shared.output import CommandAnswer, answering, pick, plain_json, print_once
 from verify.commands.shared.separated_integrals import (
     change_json,
     integrals_of,

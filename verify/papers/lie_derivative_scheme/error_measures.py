@@ -11,14 +11,11 @@ from verify.papers.argument import NUMBERS, Argument, ArgumentTexts, Check, Step
 from verify.papers.differential_polynomials import flow_of_every_hamiltonian
 from verify.papers.elementary_identities import product_of_determinants
 from verify.papers.lie_derivative_scheme import examples
-from verify.proof.assistant.shipped_theory import ShippedTheorem
 
 _TEXTS = ArgumentTexts(__file__)
 
 _H = Fraction(1, 10)
 _START = exact_maps.RationalPoint(Fraction(1, 2), Fraction(1))
-_FLOW = ShippedTheorem("Taylor", "flow_has_no_defect")
-CHAIN = ShippedTheorem("Differential", "slopes_of_composition")
 
 
 def eq_14(highest: int = 5, eta: int = 5) -> Argument:

@@ -20,11 +20,8 @@ from verify.papers.lie_derivative_scheme.examples import (
     shrinks_to,
     turns_to_and_fro,
 )
-from verify.proof.assistant.shipped_theory import ShippedTheorem
 
 _TEXTS = ArgumentTexts(__file__)
-
-BY_MANY_STEPS = ShippedTheorem("Theorems", "error_over_many_steps")
 
 
 def inequalities_of(example: ExampleMap) -> Check:

@@ -6,12 +6,10 @@ from verify.papers.elementary_identities import product_of_determinants, squares
 from verify.papers.lie_derivative_scheme import examples
 from verify.papers.lie_derivative_scheme.consistency import small_determinant
 from verify.papers.lie_derivative_scheme.criteria.connections import inequalities_of
-from verify.proof.assistant.shipped_theory import ShippedTheorem
 
 _TEXTS = ArgumentTexts(__file__)
 
 _ETAS = range(1, 4)
-_OF_LIE = ShippedTheorem("Theorems", "determinant_of_lie_in_plane")
 
 
 def criterion_2(not_small: examples.ExampleMap = examples.NOT_UNIFORM) -> Argument:
