@@ -67,14 +67,8 @@ class Hunt:
         """The tasks, each for an island of at most 200 scenes."""
         plan = Plan()
         for island, first in enumerate(range(0, self.examples, _SCENES_OF_ISLAND)):
-            task = HuntTask(
-                drawn=self.drawn,
-                seed=self.seed,
-                measure=self.measure,
-                island=island,
-                count=min(_SCENES_OF_ISLAND, self.examples - first),
-                steps=self.steps,
-            )
+            count = min(_SCENES_OF_ISLAND, self.examples - first)
+            task = HuntTask.from_object(self, island=island, count=count)
             plan.need(task, f"an island of the hunt for {self.measure}")
         return plan
 
@@ -134,12 +128,10 @@ def gallery(
     # A longer run that leaves the range is replaced by one as long as the hunt's.
     unfinished = [w for w, run in zip(hunted.worst, runs, strict=True) if run.status != "finished"]
     short = iter(separate_all(unfinished, request.steps))
-    return Gallery(
-        measure=request.measure,
+    return Gallery.from_object(
+        request,
         sentence=MEASURES[request.measure].sentence,
-        seed=request.seed,
         examples=hunted.examples,
-        steps=request.steps,
         reach=text(island_search.REACH),
         step_sizes=(text(island_search.STEP_SIZES[0]), text(island_search.STEP_SIZES[1])),
         coefficients=(str(island_search.COEFFICIENTS[0]), str(island_search.COEFFICIENTS[1])),

@@ -110,19 +110,17 @@ def flow_tasks(scene: Scene, flow: RegionFlow) -> Iterator[FlowTask]:
         is_scheme = name != EXACT_FLOW
         preserves_area = not is_scheme or step_map_of(hamiltonian, name).preserves_area
         for steps in flow.counts:
-            yield FlowTask(
+            yield FlowTask.from_object(
+                flow,
                 **common,
                 map=name,
                 shape=shape,
-                step_size=flow.step_size,
                 t0=begin,
                 steps=steps,
-                digits=flow.digits,
                 mean_lambda=flow.mean_lambda and not preserves_area and carries_defect(hamiltonian),
                 # Hausdorff distances are of curves in the plane.
                 distance=is_scheme and flow.exact and hamiltonian.planar,
                 point=point,
-                plane=flow.plane,
             )
 
 
