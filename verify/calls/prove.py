@@ -6,16 +6,7 @@ from typing import TYPE_CHECKING, overload
 
 from verify import schemes
 from verify.arithmetic.exact import whole
-from verify.calls.inputs import (
-    ParametersLike,
-    SchemeLike,
-    SystemLike,
-    Texts,
-    hamiltonian_from,
-    scheme_from,
-    step_map_from,
-    texts_from,
-)
+from verify.calls import inputs
 from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians import systems
 from verify.proof.order_for_one_h import prove as prove_map
@@ -32,37 +23,37 @@ if TYPE_CHECKING:
 
 @overload
 def prove(
-    system: SystemLike | StepMap,
-    scheme: SchemeLike | None = None,
+    system: inputs.SystemLike | StepMap,
+    scheme: inputs.SchemeLike | None = None,
     *,
-    parameters: ParametersLike = None,
+    parameters: inputs.ParametersLike = None,
 ) -> Proof: ...
 @overload
 def prove(
-    system: SystemLike | StepMap,
-    scheme: SchemeLike | None = None,
+    system: inputs.SystemLike | StepMap,
+    scheme: inputs.SchemeLike | None = None,
     *,
-    parameters: ParametersLike = None,
-    keeps: Texts,
+    parameters: inputs.ParametersLike = None,
+    keeps: inputs.Texts,
     form: str = "",
     density: str = "",
     poisson: str = "",
-    casimirs: Texts = (),
+    casimirs: inputs.Texts = (),
     reverses: str = "",
     factor: str = "",
 ) -> StructuresProof: ...
 
 
 def prove(
-    system: SystemLike | StepMap,
-    scheme: SchemeLike | None = None,
+    system: inputs.SystemLike | StepMap,
+    scheme: inputs.SchemeLike | None = None,
     *,
-    parameters: ParametersLike = None,
-    keeps: Texts = (),
+    parameters: inputs.ParametersLike = None,
+    keeps: inputs.Texts = (),
     form: str = "",
     density: str = "",
     poisson: str = "",
-    casimirs: Texts = (),
+    casimirs: inputs.Texts = (),
     reverses: str = "",
     factor: str = "",
 ) -> Proof | StructuresProof:
@@ -102,24 +93,21 @@ def prove(
     >>> str(energy.verdict), energy.leading, str(area.verdict)
     ('PROVED', '-p**3*sin(q)/6', 'REFUTED')
     """
-    request = KeepsRequest(
-        texts_from("keeps", keeps), form, density, poisson, texts_from("casimirs", casimirs),
-        reverses, factor,
-    )  # fmt: skip
+    request = inputs.keeps_request(keeps, form, density, poisson, casimirs, reverses, factor)
     if isinstance(system, StepMap):
-        claims = None if scheme is None else scheme_from(scheme)
+        claims = None if scheme is None else inputs.scheme_from(scheme)
         if isinstance(claims, StepMap) or parameters:
             name = "parameters" if parameters else "scheme"
             raise InputError(
                 name, parameters or claims, "does not go with a StepMap that is proved"
             )
         return _prove(system, claims, request)
-    hamiltonian = hamiltonian_from(system, parameters, takes_field=bool(request))
+    hamiltonian = inputs.hamiltonian_from(system, parameters, takes_field=bool(request))
     if scheme is None:
         raise InputError("scheme", NOT_GIVEN, "is missing; such as prove('duffing', 'lie2')")
-    scheme_or_map = scheme_from(scheme)
+    scheme_or_map = inputs.scheme_from(scheme)
     claims = scheme_or_map if isinstance(scheme_or_map, Scheme) else None
-    return _prove(step_map_from(scheme_or_map, hamiltonian), claims, request)
+    return _prove(inputs.step_map_from(scheme_or_map, hamiltonian), claims, request)
 
 
 def _prove(
@@ -129,16 +117,16 @@ def _prove(
         from verify.proof.structures.structures_proof import prove_structures
 
         return prove_structures(step_map, read_claims(request, step_map.hamiltonian), scheme)
-    hamiltonian_from(step_map.hamiltonian)  # raises InputError for equations without an H
+    inputs.hamiltonian_from(step_map.hamiltonian)  # raises InputError for equations without an H
     return prove_map(step_map, scheme)
 
 
 def modified_hamiltonian(
-    scheme: SchemeLike,
-    system: SystemLike | None = None,
+    scheme: inputs.SchemeLike,
+    system: inputs.SystemLike | None = None,
     order: int = 4,
     *,
-    parameters: ParametersLike = None,
+    parameters: inputs.ParametersLike = None,
     separable: bool = False,
 ) -> ModifiedEquation:
     """Return the modified equation's terms and the modified Hamiltonian H̃ = H + h H_2 + h² H_3 + ….
@@ -180,16 +168,18 @@ def modified_hamiltonian(
         return modified_for_every_h(scheme_or_map.name, order, separable)
     if separable:
         raise InputError("separable", separable, "goes without a system")
-    hamiltonian = hamiltonian_from(system, parameters)
+    hamiltonian = inputs.hamiltonian_from(system, parameters)
     claims = scheme_or_map if isinstance(scheme_or_map, Scheme) else None
-    return modified_for_one_h(step_map_from(scheme_or_map, hamiltonian), claims, order)
+    return modified_for_one_h(inputs.step_map_from(scheme_or_map, hamiltonian), claims, order)
 
 
-def _resolve_scheme(scheme: SchemeLike, system: SystemLike | None) -> Scheme | StepMap:
+def _resolve_scheme(
+    scheme: inputs.SchemeLike, system: inputs.SystemLike | None
+) -> Scheme | StepMap:
     """Return the scheme. If the name is that of a system, InputError gives the right call."""
     if isinstance(scheme, str) and systems.canonical(scheme) in systems.names():
         is_swapped = isinstance(system, str) and schemes.canonical(system) in schemes.names()
         example = system if is_swapped else "stormer-verlet"
         write = f"modified_hamiltonian({example!r}, {scheme!r})"
         raise InputError("scheme", scheme, f"is a system; write {write}")
-    return scheme_from(scheme)
+    return inputs.scheme_from(scheme)
