@@ -40,13 +40,7 @@ _SEED_COUNT = 2**32
     multiple=True,
 )
 @option("--degree", "D", "The highest degree of polynomials.", type=int, default=6)
-@option(
-    "--degrees degrees_of_freedom",
-    "N",
-    "Degrees of freedom, 1 … 8: H(p1 … pN, q1 … qN).",
-    type=int,
-    default=1,
-)
+@option("--degrees", "N", "Degrees of freedom, 1 … 8: H(p1 … pN, q1 … qN).", type=int, default=1)
 @flag("--time-dependent", "Draw H(p, q, t) and a start time t₀.")
 @option(
     "--maximise",
@@ -67,16 +61,12 @@ def explore(
     names: tuple[str, ...],
     examples: int,
     seed: int | None,
-    schemes: tuple[str, ...],
-    kinds: tuple[str, ...],
-    degree: int,
-    degrees_of_freedom: int,
-    time_dependent: bool,
     maximise: str | None,
     steps: int | None,
     output: Path,
     keep: Path | None,
     placement: "Placement",
+    **space: Any,
 ) -> CommandAnswer:
     """Hold properties of every scene, or the claims in CLAIMS, against many drawn scenes.
 
@@ -105,13 +95,8 @@ def explore(
     # The seed is printed, so that a run without --seed can be repeated.
     seed = random.SystemRandom().randrange(_SEED_COUNT) if seed is None else seed
     checks, left_out = _select_checks(claims, names) if maximise is None else ({}, {})
-    sample_space = SampleSpace(
-        kinds=kinds,
-        degree=degree,
-        schemes=schemes or _schemes_of_claims(checks),
-        time_dependent=time_dependent,
-        degrees=degrees_of_freedom,
-    )
+    space["schemes"] = space["schemes"] or _schemes_of_claims(checks)
+    sample_space = SampleSpace(**space)
     if maximise is not None:
         if claims or names:
             raise InputError(

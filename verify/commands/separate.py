@@ -30,7 +30,7 @@ from verify.commands.shared.separated_integrals import (
     change_json,
     integrals_of,
     print_change,
-    split_change,
+    split_changes,
 )
 from verify.commands.shared.structure_options import structure_options
 
@@ -221,12 +221,7 @@ def separate(
     with progress_bar("stepping", RUNS * sum(n for _, n in step_counts)) as advance:
         options |= {"step_sizes": step_sizes, "progress": advance}
         grid = separate_grid(hamiltonian, scheme, **options)
-    start = {name: options[name] for name in ("q", "p", "t0", "digits", "arithmetic")}
-    changes = [
-        (structure, split_change(hamiltonian, scheme, structure, *count, **start))
-        for count in step_counts
-        for structure in integrals
-    ]
+    changes = split_changes(hamiltonian, scheme, integrals, step_counts, options)
     time = options["time"]
     note = describe_rounding(time and positive(time, "time"), [h for h, _ in step_counts])
 

@@ -161,12 +161,7 @@ HEAD = ("what the argument rests on", "value", "checked")
 
 
 def _argument(
-    verdict: Verdict,
-    evidence: str,
-    steps: Iterable[Step],
-    *,
-    setting: str = "",
-    remark: str = "",
+    verdict: Verdict, evidence: str, steps: Iterable[Step], *, setting: str = "", remark: str = ""
 ) -> Argument:
     """Build the argument if every check holds; otherwise it shows nothing, and is UNDECIDED.
 

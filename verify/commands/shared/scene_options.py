@@ -30,8 +30,7 @@ schemes_option = option(
     multiple=True,
 )
 start_options = options(
-    option("--q", "Q", "Initial displacement."),
-    option("--p", "P", "Initial momentum."),
+    option("--q", "Q", "Initial displacement."), option("--p", "P", "Initial momentum.")
 )
 _step_options = options(
     option(

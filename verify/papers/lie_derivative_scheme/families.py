@@ -68,9 +68,7 @@ def separable() -> Check:
         ring.set_gradient(f"V{k}", p=ring.zero, q=ring[f"V{k + 1}"])
     t1, t2, t3, v1, v2, v3 = (ring[f"{f}{k}"] for f in "TV" for k in (1, 2, 3))
     gaps = differential_polynomials.DifferentialFlow(ring, t1, v1).delta_j_gaps(
-        2,
-        h3=(t1 * t2 * v3 - v1 * v2 * t3) / 2,
-        h4=(t2**2 * v2**2 - t1 * t3 * v1 * v3) / 4,
+        2, h3=(t1 * t2 * v3 - v1 * v2 * t3) / 2, h4=(t2**2 * v2**2 - t1 * t3 * v1 * v3) / 4
     )
     return vanishes(
         "H = T(p) + V(q): ΔJ = (h³/2)(T'T''V''' − V'V''T''') + (h⁴/4)(T''²V''² − T'T'''V'V''')",

@@ -24,8 +24,7 @@ def eq_1(sign: int = -1) -> Argument:
     diff, h_p, h_q = flow.ring.diff, flow.h_p, flow.h_q
     rate = vanishes("dH/dt = `H_p` p' + `H_q` q' for a generic H", sign * h_q * h_p + h_p * h_q)
     divergence = vanishes(
-        "the divergence ∂p'/∂p + ∂q'/∂q for a generic H",
-        sign * diff(h_q, "p") + diff(h_p, "q"),
+        "the divergence ∂p'/∂p + ∂q'/∂q for a generic H", sign * diff(h_q, "p") + diff(h_p, "q")
     )
     return _TEXTS.proof("eq_1", rate=rate, divergence=divergence)
 

@@ -37,7 +37,8 @@ def _orbits_view(maps: Sequence[OrbitMapResult], anchor: str) -> OrbitsView:
     counts = "; ".join(f"{m.scheme}: {_counts(m)}" for m in maps)
     texts = [f"{name}{IS}{number(x)}" for name, x in _fixed_values(first_map)]
     fixed = f", with {', '.join(texts)}" if texts else ""
-    line_note = " Grey lines: the same energy H." if _has_energies(first_map) else ""
+    has_energies = all(x is not None for row in first_map.energies for x in row)
+    line_note = " Grey lines: the same energy H." if has_energies else ""
     return OrbitsView(
         anchor=anchor,
         title=title,
@@ -67,10 +68,6 @@ def _fixed_values(orbit_map: OrbitMapResult) -> Iterator[tuple[str, str]]:
             for k, x in enumerate(values, start=1):
                 if f"{letter}{k}" not in orbit_map.axes:
                     yield f"{letter}{k}", x
-
-
-def _has_energies(orbit_map: OrbitMapResult) -> bool:
-    return all(x is not None for row in orbit_map.energies for x in row)
 
 
 def _energy_finding(orbit_map: OrbitMapResult) -> str:
