@@ -72,10 +72,8 @@ def _orders(claims: Sequence[ClaimResult]) -> Iterator[tuple[str, ...]]:
     """Yield a row for each method: its label, the claimed order, the order that holds, the first
     wrong power of h, and the size of its error."""
     for claim in claims:
-        claimed, holds = (
-            _CLAIMED_ORDER.search(str(claim.statement)),
-            _ORDER_THAT_HOLDS.search(str(claim.evidence)),
-        )
+        claimed = _CLAIMED_ORDER.search(str(claim.statement))
+        holds = _ORDER_THAT_HOLDS.search(str(claim.evidence))
         gap = _FIRST_WRONG_TERM.search(str(claim.evidence))
         if claimed and holds:
             term = f"h^{gap[1]}" if gap else "–"

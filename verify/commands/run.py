@@ -172,10 +172,8 @@ def _run_scheme(
         arithmetic,
         measured,
     )
-    keeper, has_all_reported = (
-        Keeper(keep, name_of(run_identity)),
-        all(carries(hamiltonian, n) for n in REPORTED),
-    )
+    keeper = Keeper(keep, name_of(run_identity))
+    has_all_reported = all(carries(hamiltonian, n) for n in REPORTED)
     # In float64 the plain evaluation of Λ shows the effect of rounding, so it is reported too; at
     # many digits the effect cannot be seen.
     is_plain = arithmetic == "float64" and has_all_reported

@@ -82,10 +82,8 @@ def need_flows(plan: Plan, scene: Scene) -> None:
 
 def _no_mean(scene: Scene, name: str, scheme: str) -> tuple[str, str]:
     hamiltonian = scene.exact_hamiltonian()
-    structure, evidence = (
-        hamiltonian.structure,
-        {AREA: "proved", SYMPLECTIC: "shown"}[hamiltonian.structure],
-    )
+    structure = hamiltonian.structure
+    evidence = {AREA: "proved", SYMPLECTIC: "shown"}[hamiltonian.structure]
     reason = f"{structure.identity} is {evidence}: {structure.accumulated} is exactly 0"
     if not step_map_of(hamiltonian, scheme).preserves_area:
         reason = (

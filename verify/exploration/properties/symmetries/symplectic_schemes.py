@@ -51,10 +51,8 @@ def _check_by_runs(sample: Sample) -> None:
         raise Violation(f"W is {greatest.str(6)} after two steps, by differences of runs")
     if carries(sample.hamiltonian, "lambda_plain"):
         end = reference_steps.end_of(sample, "lambda_plain")
-        change, small = (
-            end["lambda_plain"],
-            _PRODUCT_TOLERANCE * (1 + sum(abs(end[n]) for n in sample.point)),
-        )
+        change = end["lambda_plain"]
+        small = _PRODUCT_TOLERANCE * (1 + sum(abs(end[n]) for n in sample.point))
         if abs(change) > small:
             # Twice as many digits decide if the equations were not solved, or if the map is wrong.
             accurate_end = reference_steps.end_of(sample, times=2)

@@ -58,10 +58,8 @@ class SeparationView:
 
 
 def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeparationView | None:
-    plain_grids, crossover_grids = (
-        grids_of(scene.separations, proof),
-        grids_of(scene.crossovers, proof),
-    )
+    plain_grids = grids_of(scene.separations, proof)
+    crossover_grids = grids_of(scene.crossovers, proof)
     if not plain_grids and not crossover_grids:
         return _view_of_form(scene, proof)
     grid_points = [point for grid in plain_grids or crossover_grids for point in grid.points]
@@ -84,10 +82,8 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeparationView
 
 def _view_of_form(scene: SceneResult, proof: ProofResult) -> SeparationView | None:
     """Return the view of W, in n degrees of freedom."""
-    plain_grids, crossover_grids = (
-        grids_of(scene.form_separations, proof),
-        grids_of(scene.form_crossovers, proof),
-    )
+    plain_grids = grids_of(scene.form_separations, proof)
+    crossover_grids = grids_of(scene.form_crossovers, proof)
     grids = [*plain_grids, *crossover_grids]
     if not grids:
         return None
