@@ -41,7 +41,7 @@ def check(
     order: int | None = None,
     area_preserving: bool = False,
     symplectic: bool = False,
-    arguments: Texts | None = None,
+    arguments: inputs.Texts | None = None,
     p: NumberOrList | None = None,
     q: NumberOrList | None = None,
     step_size: Number | None = None,
@@ -125,12 +125,12 @@ def check(
 
 
 def callee_of_system(
-    system: Hamiltonian, step: Callable[..., Any], arguments: Texts | None, time_limit: float
+    system: Hamiltonian, step: Callable[..., Any], arguments: inputs.Texts | None, time_limit: float
 ) -> Callee:
     """Return a step of H, or of equations, as a callee. Raises InputError."""
     if system.energy is not None:
         return callee_from(
-            step, system.coordinates, arguments=names_from("arguments", arguments),
+            step, system.coordinates, arguments=inputs.names_from("arguments", arguments),
             parameters=dict(system.values),
             time_limit=time_limit,
         )  # fmt: skip
@@ -146,7 +146,7 @@ def check_map(
     function: Callable[..., Any],
     degrees: int = 1,
     *,
-    arguments: Texts | None = None,
+    arguments: inputs.Texts | None = None,
     parameters: Mapping[str, Number] | None = None,
     point: Sequence[Number] | None = None,
     within: Number | None = None,
@@ -202,7 +202,7 @@ def check_map(
     if coordinates is None:
         callee = callee_from(
             # `stepped=False`: the map has no step size h among its arguments.
-            function, names, stepped=False, arguments=names_from("arguments", arguments),
+            function, names, stepped=False, arguments=inputs.names_from("arguments", arguments),
             parameters=values, strict=True, time_limit=time_limit,
         )  # fmt: skip
     elif arguments is not None:

@@ -21,6 +21,7 @@ from verify.scenes.observables import CLOSED_FORM, observables_aside, select_obs
 from verify.scenes.results.run import MOST_POINTS
 from verify.scenes.results.sweep import Sweep
 from verify.scenes.values import AUTO, steps_from
+from verify.structures.reading import KeepsRequest
 
 _DEFAULT_DIGITS = 17
 _MAX_RUNS = 100_000  # the limit for a sweep

@@ -151,7 +151,9 @@ def test_how_many_steps_a_machine_checked_is_said() -> None:
         return str(proof(f"because\n\n{text}", one=ONE).checked_by[0])
 
     assert said("- a [one]") == "by hand: an argument in 1 step, all checked by machine"
-    assert said("- a [one]\n- b") == ("by hand: an argument in 2 steps, 1 checked by machine, 1 not")
+    assert said("- a [one]\n- b") == (
+        "by hand: an argument in 2 steps, 1 checked by machine, 1 not"
+    )
     assert said("- a [tried one]") == (
         "by hand: an argument in 1 step, none checked by machine, 1 not"
     )
