@@ -12,13 +12,8 @@ from itertools import groupby
 from pathlib import Path
 
 from verify.audits import reproductions
+from verify.audits.methods import float_step, tableau_proofs
 from verify.audits.methods.driver import POINTS
-from verify.audits.methods.float_step import (
-    finding,
-    judge_measured_area,
-    judge_measured_order,
-    report_unclaimed,
-)
 from verify.audits.methods.integrator import (
     ExactTableau,
     FloatStep,
@@ -26,12 +21,6 @@ from verify.audits.methods.integrator import (
     LibraryComparison,
     ReleasedIntegrator,
     table_integrator,
-)
-from verify.audits.methods.tableau_proofs import (
-    judge_exact_order,
-    order_of,
-    repair,
-    symplecticity,
 )
 from verify.audits.reproductions import write_clock_program
 from verify.audits.second_look import Look, look_again, look_at_claim, look_at_step, look_at_table
@@ -161,16 +150,18 @@ def _(method: FloatTable, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
 def _(method: ExactTableau, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
     table, rounded, claimed = method.tableau, method.rounded, integrator.order
     if claimed is not None:
-        order = order_of(table, claimed, rounded)
+        order = tableau_proofs.order_of(table, claimed, rounded)
         wrong = order.order < claimed and not rounded
-        repaired = repair(table, claimed) if wrong else _NO_EVIDENCE
-        ruling = judge_exact_order(claimed, order, symplecticity(table, rounded), rounded, repaired)
+        repaired = tableau_proofs.repair(table, claimed) if wrong else _NO_EVIDENCE
+        ruling = tableau_proofs.judge_exact_order(
+            claimed, order, tableau_proofs.symplecticity(table, rounded), rounded, repaired
+        )
         embedded = "embedded" in integrator.name
         severity = Severity.WRONG_WEIGHTS if embedded else Severity.WRONG_ORDER
         claim = TableClaim("order", f"order {claimed}", *ruling, severity)
         yield claim, integrator.reproduction, partial(_at_tableau, method, integrator.name, claimed)
     if integrator.area_preserving:
-        area = symplecticity(table, rounded)
+        area = tableau_proofs.symplecticity(table, rounded)
         verdict = {True: Verdict.PROVED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}
         severity = Severity.NOT_SYMPLECTIC
         claim = TableClaim("area", _SYMPLECTIC, verdict[area.holds], area.evidence, (), severity)
@@ -196,15 +187,17 @@ def _(method: FloatStep, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
     if order is not None:
         statement = f"order {order}, too, {_IN_TIME_TEXT}" if timed else f"order {order}"
         severity = Severity.WRONG_CLOCK if timed else Severity.WRONG_ORDER
-        ruling = judge_measured_order(order, finding(method), area)
+        ruling = float_step.judge_measured_order(order, float_step.finding(method), area)
         claim = TableClaim("order", statement, *ruling, severity)
         script = reproductions.write_order_program(code, point, order, timed)
         yield claim, script, partial(look_at_step, integrator, order)
     elif timed:
-        claim = TableClaim("in time", _UNCLAIMED_IN_TIME, *report_unclaimed(finding(method)))
+        claim = TableClaim(
+            "in time", _UNCLAIMED_IN_TIME, *float_step.report_unclaimed(float_step.finding(method))
+        )
         yield claim, reproductions.write_time_program(code, point), _no_look
     if area:
-        ruling = judge_measured_area(finding(method))
+        ruling = float_step.judge_measured_area(float_step.finding(method))
         claim = TableClaim("area", _SYMPLECTIC, *ruling, Severity.NOT_SYMPLECTIC)
         yield claim, reproductions.write_area_program(code, point), _no_look
 

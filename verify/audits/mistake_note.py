@@ -9,12 +9,7 @@ from pathlib import Path
 
 from jinja2 import StrictUndefined, Template
 
-from verify.audits.mistake import (
-    ConfirmedFinding,
-    NotConfirmedError,
-    confirm,
-    descriptions,
-)
+from verify.audits import mistake
 from verify.files import write_atomically
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.report import Report
@@ -34,11 +29,11 @@ def write_findings(
     folder.mkdir(exist_ok=True)
     paths: list[Path] = []
     reasons: dict[str, str] = {}
-    for name, described in descriptions().items():
+    for name, described in mistake.descriptions().items():
         on_finding(name)
         try:
-            confirmed = confirm(name, described, report.claims)
-        except NotConfirmedError as error:
+            confirmed = mistake.confirm(name, described, report.claims)
+        except mistake.NotConfirmedError as error:
             reasons[name] = str(error)
             continue
         path = folder / f"{name}.md"
@@ -47,7 +42,7 @@ def write_findings(
     return paths, reasons
 
 
-def _describe_versions(confirmed: ConfirmedFinding, report: Report) -> str:
+def _describe_versions(confirmed: mistake.ConfirmedFinding, report: Report) -> str:
     """Describe the version that was judged, and the versions of areaproof and Python."""
     versions = report.provenance.versions if report.provenance else {}
     library = confirmed.described.library
@@ -55,7 +50,7 @@ def _describe_versions(confirmed: ConfirmedFinding, report: Report) -> str:
     return f"{opening}by areaproof {version('areaproof')}, Python {platform.python_version()}."
 
 
-def note(confirmed: ConfirmedFinding, versions: str) -> str:
+def note(confirmed: mistake.ConfirmedFinding, versions: str) -> str:
     """Return the text of the note, which can be sent as it is.
 
     `versions`: a sentence on the versions of the library, of areaproof and of Python.
@@ -77,10 +72,8 @@ def _orders(claims: Sequence[ClaimResult]) -> Iterator[tuple[str, ...]]:
     """Yield a row for each method: its label, the claimed order, the order that holds, the first
     wrong power of h, and the size of its error."""
     for claim in claims:
-        claimed, holds = (
-            _CLAIMED_ORDER.search(str(claim.statement)),
-            _ORDER_THAT_HOLDS.search(str(claim.evidence)),
-        )
+        claimed = _CLAIMED_ORDER.search(str(claim.statement))
+        holds = _ORDER_THAT_HOLDS.search(str(claim.evidence))
         gap = _FIRST_WRONG_TERM.search(str(claim.evidence))
         if claimed and holds:
             term = f"h^{gap[1]}" if gap else "–"

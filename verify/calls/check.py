@@ -12,17 +12,7 @@ from fractions import Fraction
 from typing import Any
 
 from verify.arithmetic.exact import Number, NumberOrList, positive, rational, whole
-from verify.calls.inputs import (
-    ParametersLike,
-    SchemeLike,
-    SystemLike,
-    Texts,
-    hamiltonian_from,
-    names_from,
-    scheme_from,
-    step_map_from,
-    texts_from,
-)
+from verify.calls import inputs
 from verify.calls.prove import prove as prove_structures_of
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import check_degrees, coordinates_in
@@ -41,27 +31,26 @@ from verify.proof.proof_for_one_h import Proof
 from verify.proof.structures.structures_proof import StructuresProof
 from verify.scenes.keeps_section import read_claims
 from verify.schemes.scheme import Scheme
-from verify.structures.reading import KeepsRequest
 
 
 def check(
-    system: SystemLike,
-    step: Callable[..., Any] | SchemeLike,
+    system: inputs.SystemLike,
+    step: Callable[..., Any] | inputs.SchemeLike,
     *,
-    parameters: ParametersLike = None,
+    parameters: inputs.ParametersLike = None,
     order: int | None = None,
     area_preserving: bool = False,
     symplectic: bool = False,
-    arguments: Texts | None = None,
+    arguments: inputs.Texts | None = None,
     p: NumberOrList | None = None,
     q: NumberOrList | None = None,
     step_size: Number | None = None,
     within: Number | None = None,
-    keeps: Texts = (),
+    keeps: inputs.Texts = (),
     form: str = "",
     density: str = "",
     poisson: str = "",
-    casimirs: Texts = (),
+    casimirs: inputs.Texts = (),
     reverses: str = "",
     factor: str = "",
     point: Sequence[Number] | None = None,
@@ -106,11 +95,8 @@ def check(
     >>> str(lotka.verdict), str(lotka.keeps[0].reason)
     ('PROVED', "S = Jᵀω(z')J − ω(z) is 0 at every step")
     """
-    request = KeepsRequest(
-        texts_from("keeps", keeps), form, density, poisson, texts_from("casimirs", casimirs),
-        reverses, factor,
-    )  # fmt: skip
-    hamiltonian = hamiltonian_from(system, parameters, takes_field=True)
+    request = inputs.keeps_request(keeps, form, density, poisson, casimirs, reverses, factor)
+    hamiltonian = inputs.hamiltonian_from(system, parameters, takes_field=True)
     if order is not None:
         order = whole("order", order, 1, MOST_CLAIMED)
     for name, claimed in (("area_preserving", area_preserving), ("symplectic", symplectic)):
@@ -120,8 +106,8 @@ def check(
         if request:
             refinements = {name: x for name, x in vars(request).items() if name != "keeps"}
             return prove_structures_of(hamiltonian, step, keeps=request.keeps, **refinements)
-        scheme = scheme_from(step)
-        step_map = step_map_from(scheme, hamiltonian)
+        scheme = inputs.scheme_from(step)
+        step_map = inputs.step_map_from(scheme, hamiltonian)
         claims_symplectic = symplectic or (area_preserving and hamiltonian.degrees == 1)
         # If n > 1, det J ≡ 1 is weaker than JᵀΩJ ≡ Ω, and a scheme's proof decides the latter.
         if area_preserving and not claims_symplectic:
@@ -139,12 +125,12 @@ def check(
 
 
 def callee_of_system(
-    system: Hamiltonian, step: Callable[..., Any], arguments: Texts | None, time_limit: float
+    system: Hamiltonian, step: Callable[..., Any], arguments: inputs.Texts | None, time_limit: float
 ) -> Callee:
     """Return a step of H, or of equations, as a callee. Raises InputError."""
     if system.energy is not None:
         return callee_from(
-            step, system.coordinates, arguments=names_from("arguments", arguments),
+            step, system.coordinates, arguments=inputs.names_from("arguments", arguments),
             parameters=dict(system.values),
             time_limit=time_limit,
         )  # fmt: skip
@@ -160,16 +146,16 @@ def check_map(
     function: Callable[..., Any],
     degrees: int = 1,
     *,
-    arguments: Texts | None = None,
+    arguments: inputs.Texts | None = None,
     parameters: Mapping[str, Number] | None = None,
     point: Sequence[Number] | None = None,
     within: Number | None = None,
-    coordinates: Texts | None = None,
-    keeps: Texts = (),
+    coordinates: inputs.Texts | None = None,
+    keeps: inputs.Texts = (),
     form: str = "",
     density: str = "",
     poisson: str = "",
-    casimirs: Texts = (),
+    casimirs: inputs.Texts = (),
     reverses: str = "",
     factor: str = "",
     time_limit: float = TIME_LIMIT,
@@ -209,17 +195,14 @@ def check_map(
     if not callable(function):
         raise InputError("map", function, "is no function; wanted: map(p, q), which returns p', q'")
     check_degrees(degrees)
-    request = KeepsRequest(
-        texts_from("keeps", keeps), form, density, poisson, texts_from("casimirs", casimirs),
-        reverses, factor,
-    )  # fmt: skip
-    own_names = names_from("coordinates", coordinates)
+    request = inputs.keeps_request(keeps, form, density, poisson, casimirs, reverses, factor)
+    own_names = inputs.names_from("coordinates", coordinates)
     names = coordinates_in(degrees) if own_names is None else coordinates_from(own_names)
     values = {n: rational(x, f"parameter {n}") for n, x in (parameters or {}).items()}
     if coordinates is None:
         callee = callee_from(
             # `stepped=False`: the map has no step size h among its arguments.
-            function, names, stepped=False, arguments=names_from("arguments", arguments),
+            function, names, stepped=False, arguments=inputs.names_from("arguments", arguments),
             parameters=values, strict=True, time_limit=time_limit,
         )  # fmt: skip
     elif arguments is not None:

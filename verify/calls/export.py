@@ -3,25 +3,18 @@
 from __future__ import annotations
 
 from verify.algebra.expressions.formula_text import to_text
-from verify.calls.inputs import (
-    ParametersLike,
-    SchemeLike,
-    SystemLike,
-    hamiltonian_from,
-    scheme_from,
-    step_map_from,
-)
+from verify.calls import inputs
 from verify.schemes.export import get
 from verify.schemes.export.program import Program, program_of
 from verify.schemes.scheme import Scheme
 
 
 def export(
-    system: SystemLike,
-    scheme: SchemeLike,
+    system: inputs.SystemLike,
+    scheme: inputs.SchemeLike,
     language: str = "python",
     *,
-    parameters: ParametersLike = None,
+    parameters: inputs.ParametersLike = None,
     name: str = "step",
 ) -> str:
     """Return the step map, its Jacobian and ΔJ as a text in C, Python, Julia or LaTeX.
@@ -50,19 +43,19 @@ def export(
 
 
 def build_program(
-    system: SystemLike,
-    scheme: SchemeLike,
+    system: inputs.SystemLike,
+    scheme: inputs.SchemeLike,
     language: str,
-    parameters: ParametersLike = None,
+    parameters: inputs.ParametersLike = None,
     name: str = "step",
 ) -> Program:
     """Return the map as assignments, with its constants, for a language.
 
     The arguments are those of `export`.
     """
-    hamiltonian = hamiltonian_from(system, parameters)
-    scheme_or_map = scheme_from(scheme)
-    step_map = step_map_from(scheme_or_map, hamiltonian)
+    hamiltonian = inputs.hamiltonian_from(system, parameters)
+    scheme_or_map = inputs.scheme_from(scheme)
+    step_map = inputs.step_map_from(scheme_or_map, hamiltonian)
     if isinstance(scheme_or_map, Scheme):
         scheme_text = scheme_or_map.name
     else:

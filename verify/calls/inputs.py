@@ -28,6 +28,7 @@ from verify.scenes.frozen import Frozen
 from verify.scenes.scene import Scene, scene_from
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
+from verify.structures.reading import KeepsRequest
 
 SystemLike = Hamiltonian | System | str
 SchemeLike = Scheme | StepMap | str
@@ -148,6 +149,15 @@ def texts_from(name: str, values: Texts) -> tuple[str, ...]:
 def names_from(name: str, values: Texts | None) -> str | None:
     """Return names, in a text or a list of texts, as a text with commas; None for None."""
     return None if values is None else ",".join(texts_from(name, values))
+
+
+def keeps_request(
+    keeps: Texts, form: str = "", density: str = "", poisson: str = "", casimirs: Texts = (),
+    reverses: str = "", factor: str = "",
+) -> KeepsRequest:  # fmt: skip
+    """Return the request for these structures, refined so. Raises InputError."""
+    names, brackets = texts_from("keeps", keeps), texts_from("casimirs", casimirs)
+    return KeepsRequest(names, form, density, poisson, brackets, reverses, factor)
 
 
 def as_list(name: str, value: Any) -> list[Any]:

@@ -6,16 +6,7 @@ from typing import TYPE_CHECKING, Literal, overload
 
 from verify import schemes
 from verify.arithmetic.exact import whole
-from verify.calls.inputs import (
-    ParametersLike,
-    SchemeLike,
-    SystemLike,
-    Texts,
-    hamiltonian_from,
-    scheme_from,
-    step_map_from,
-    texts_from,
-)
+from verify.calls import inputs
 from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians import systems
 from verify.proof.order_for_one_h import prove as prove_map
@@ -33,22 +24,22 @@ if TYPE_CHECKING:
 
 @overload
 def prove(
-    system: SystemLike | StepMap,
-    scheme: SchemeLike | None = None,
+    system: inputs.SystemLike | StepMap,
+    scheme: inputs.SchemeLike | None = None,
     *,
-    parameters: ParametersLike = None,
+    parameters: inputs.ParametersLike = None,
 ) -> Proof: ...
 @overload
 def prove(
-    system: SystemLike | StepMap,
-    scheme: SchemeLike | None = None,
+    system: inputs.SystemLike | StepMap,
+    scheme: inputs.SchemeLike | None = None,
     *,
-    parameters: ParametersLike = None,
-    keeps: Texts,
+    parameters: inputs.ParametersLike = None,
+    keeps: inputs.Texts,
     form: str = "",
     density: str = "",
     poisson: str = "",
-    casimirs: Texts = (),
+    casimirs: inputs.Texts = (),
     reverses: str = "",
     factor: str = "",
 ) -> StructuresProof: ...
@@ -57,7 +48,7 @@ def prove(
 @overload
 def prove(
     system: None = None,
-    scheme: SchemeLike | None = None,
+    scheme: inputs.SchemeLike | None = None,
     *,
     every_hamiltonian: Literal[True],
     separable: bool = False,
@@ -67,9 +58,9 @@ def prove(
 @overload
 def prove(
     system: None = None,
-    scheme: SchemeLike | None = None,
+    scheme: inputs.SchemeLike | None = None,
     *,
-    keeps: Texts,
+    keeps: inputs.Texts,
     reverses: str = "",
     every_hamiltonian: Literal[True],
     separable: bool = False,
@@ -79,15 +70,15 @@ def prove(
 
 
 def prove(
-    system: SystemLike | StepMap | None = None,
-    scheme: SchemeLike | None = None,
+    system: inputs.SystemLike | StepMap | None = None,
+    scheme: inputs.SchemeLike | None = None,
     *,
-    parameters: ParametersLike = None,
-    keeps: Texts = (),
+    parameters: inputs.ParametersLike = None,
+    keeps: inputs.Texts = (),
     form: str = "",
     density: str = "",
     poisson: str = "",
-    casimirs: Texts = (),
+    casimirs: inputs.Texts = (),
     reverses: str = "",
     factor: str = "",
     every_hamiltonian: bool = False,
@@ -137,10 +128,7 @@ def prove(
     >>> prove(scheme="gauss4", every_hamiltonian=True, degrees=2, keeps="angular-momentum").verdict
     <Verdict.PROVED: 'PROVED'>
     """
-    request = KeepsRequest(
-        texts_from("keeps", keeps), form, density, poisson, texts_from("casimirs", casimirs),
-        reverses, factor,
-    )  # fmt: skip
+    request = inputs.keeps_request(keeps, form, density, poisson, casimirs, reverses, factor)
     family = {"separable": separable, "time_dependent": time_dependent, "degrees": degrees}
     if every_hamiltonian:
         if system is not None or parameters:
@@ -153,19 +141,19 @@ def prove(
     if system is None:
         raise InputError("system", NOT_GIVEN, "is missing; such as prove('duffing', 'lie2')")
     if isinstance(system, StepMap):
-        claims = None if scheme is None else scheme_from(scheme)
+        claims = None if scheme is None else inputs.scheme_from(scheme)
         if isinstance(claims, StepMap) or parameters:
             name = "parameters" if parameters else "scheme"
             raise InputError(
                 name, parameters or claims, "does not go with a StepMap that is proved"
             )
         return _prove(system, claims, request)
-    hamiltonian = hamiltonian_from(system, parameters, takes_field=bool(request))
+    hamiltonian = inputs.hamiltonian_from(system, parameters, takes_field=bool(request))
     if scheme is None:
         raise InputError("scheme", NOT_GIVEN, "is missing; such as prove('duffing', 'lie2')")
-    scheme_or_map = scheme_from(scheme)
+    scheme_or_map = inputs.scheme_from(scheme)
     claims = scheme_or_map if isinstance(scheme_or_map, Scheme) else None
-    return _prove(step_map_from(scheme_or_map, hamiltonian), claims, request)
+    return _prove(inputs.step_map_from(scheme_or_map, hamiltonian), claims, request)
 
 
 def _prove(
@@ -175,12 +163,12 @@ def _prove(
         from verify.proof.structures.structures_proof import prove_structures
 
         return prove_structures(step_map, read_claims(request, step_map.hamiltonian), scheme)
-    hamiltonian_from(step_map.hamiltonian)  # raises InputError for equations without an H
+    inputs.hamiltonian_from(step_map.hamiltonian)  # raises InputError for equations without an H
     return prove_map(step_map, scheme)
 
 
 def _prove_for_every_h(
-    scheme: SchemeLike | None,
+    scheme: inputs.SchemeLike | None,
     request: KeepsRequest,
     separable: bool,
     timed: bool,
@@ -189,7 +177,7 @@ def _prove_for_every_h(
     from verify.proof.order_for_every_h import prove_for_every_h
     from verify.proof.structures.structures_for_every_h import prove_structures_for_every_h
 
-    method = None if scheme is None else scheme_from(scheme)
+    method = None if scheme is None else inputs.scheme_from(scheme)
     if not isinstance(method, Scheme):
         problem = "is of one H; every_hamiltonian=True goes with a scheme of every H, as 'lie2'"
         raise InputError("scheme", NOT_GIVEN if scheme is None else scheme, problem)
@@ -205,11 +193,11 @@ def _prove_for_every_h(
 
 
 def modified_hamiltonian(
-    scheme: SchemeLike,
-    system: SystemLike | None = None,
+    scheme: inputs.SchemeLike,
+    system: inputs.SystemLike | None = None,
     order: int = 4,
     *,
-    parameters: ParametersLike = None,
+    parameters: inputs.ParametersLike = None,
     separable: bool = False,
 ) -> ModifiedEquation:
     """Return the modified equation's terms and the modified Hamiltonian H̃ = H + h H_2 + h² H_3 + ….
@@ -251,16 +239,18 @@ def modified_hamiltonian(
         return modified_for_every_h(scheme_or_map.name, order, separable)
     if separable:
         raise InputError("separable", separable, "goes without a system")
-    hamiltonian = hamiltonian_from(system, parameters)
+    hamiltonian = inputs.hamiltonian_from(system, parameters)
     claims = scheme_or_map if isinstance(scheme_or_map, Scheme) else None
-    return modified_for_one_h(step_map_from(scheme_or_map, hamiltonian), claims, order)
+    return modified_for_one_h(inputs.step_map_from(scheme_or_map, hamiltonian), claims, order)
 
 
-def _resolve_scheme(scheme: SchemeLike, system: SystemLike | None) -> Scheme | StepMap:
+def _resolve_scheme(
+    scheme: inputs.SchemeLike, system: inputs.SystemLike | None
+) -> Scheme | StepMap:
     """Return the scheme. If the name is that of a system, InputError gives the right call."""
     if isinstance(scheme, str) and systems.canonical(scheme) in systems.names():
         is_swapped = isinstance(system, str) and schemes.canonical(system) in schemes.names()
         example = system if is_swapped else "stormer-verlet"
         write = f"modified_hamiltonian({example!r}, {scheme!r})"
         raise InputError("scheme", scheme, f"is a system; write {write}")
-    return scheme_from(scheme)
+    return inputs.scheme_from(scheme)

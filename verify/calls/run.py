@@ -8,20 +8,7 @@ from typing import Any
 
 from verify.arithmetic.exact import Number, NumberOrList, positive, rational, text, whole
 from verify.arithmetic.systems import float64
-from verify.calls.inputs import (
-    NumbersLike,
-    ParametersLike,
-    SchemeLike,
-    SchemesLike,
-    SystemLike,
-    Texts,
-    as_list,
-    hamiltonian_from,
-    is_list,
-    scheme_name,
-    schemes_from,
-    texts_from,
-)
+from verify.calls import inputs
 from verify.calls.progress import Progress, progress_of
 from verify.calls.run_result import RunResult
 from verify.errors import InputError
@@ -41,8 +28,8 @@ _MAX_RUNS = 100_000  # the limit for a sweep
 
 
 def run(
-    system: SystemLike,
-    scheme: SchemeLike,
+    system: inputs.SystemLike,
+    scheme: inputs.SchemeLike,
     *,
     q: NumberOrList | None = None,
     p: NumberOrList | None = None,
@@ -51,15 +38,15 @@ def run(
     steps: int | None = None,
     time: Number | None = None,
     t0: Number = 0,
-    parameters: ParametersLike = None,
+    parameters: inputs.ParametersLike = None,
     arithmetic: str | None = None,
     digits: int | None = None,
     observables: Sequence[str] | None = None,
-    keeps: Texts = (),
+    keeps: inputs.Texts = (),
     form: str = "",
     density: str = "",
     poisson: str = "",
-    casimirs: Texts = (),
+    casimirs: inputs.Texts = (),
     reverses: str = "",
     factor: str = "",
     points: int = 0,
@@ -113,25 +100,24 @@ def run(
             system, scheme, q=q, p=p, start=start, step_size=step_size, steps=steps, time=time,
             t0=t0, parameters=parameters, arithmetic=arithmetic, digits=digits,
             observables=observables, points=points, progress=progress,
-            keeps=KeepsRequest(
-                texts_from("keeps", keeps), form, density, poisson,
-                texts_from("casimirs", casimirs), reverses, factor,
+            keeps=inputs.keeps_request(
+                keeps, form, density, poisson, casimirs, reverses, factor
             ),
         )
     )  # fmt: skip
 
 
 def run_in_turn(
-    system: SystemLike, scheme: SchemeLike, *, q: NumberOrList | None, p: NumberOrList | None,
-    step_size: Number, start: Mapping[str, Number] | None = None, steps: int | None,
-    time: Number | None, t0: Number = 0, parameters: ParametersLike, arithmetic: str | None = None,
-    digits: int | None = None, observables: Sequence[str] | None,
+    system: inputs.SystemLike, scheme: inputs.SchemeLike, *, q: NumberOrList | None,
+    p: NumberOrList | None, step_size: Number, start: Mapping[str, Number] | None = None,
+    steps: int | None, time: Number | None, t0: Number = 0, parameters: inputs.ParametersLike,
+    arithmetic: str | None = None, digits: int | None = None, observables: Sequence[str] | None,
     keeps: KeepsRequest | None = None, points: int = 0, progress: Progress,
 ) -> Course[RunResult]:  # fmt: skip
     """Do `run` as a course, a generator that can be stepped together with others."""
-    hamiltonian = hamiltonian_from(system, parameters, takes_field=True)
+    hamiltonian = inputs.hamiltonian_from(system, parameters, takes_field=True)
     check_point(hamiltonian, start_of(hamiltonian, q, p, start), t0)
-    name = scheme_name(scheme, hamiltonian)
+    name = inputs.scheme_name(scheme, hamiltonian)
     count = steps_from(steps, time, step_size)
     whole("points", points, 0, MOST_POINTS)
     digits = None if digits is None else whole("digits", digits, 1)
@@ -156,19 +142,19 @@ def run_in_turn(
 def _observable_names(observables: Sequence[str] | None) -> tuple[str, ...] | None:
     if observables is None:
         return None
-    return tuple(observables) if is_list(observables) else (str(observables),)
+    return tuple(observables) if inputs.is_list(observables) else (str(observables),)
 
 
 def sweep(
-    system: SystemLike,
-    scheme: SchemesLike,
+    system: inputs.SystemLike,
+    scheme: inputs.SchemesLike,
     *,
-    q: NumbersLike,
-    p: NumbersLike,
-    step_size: NumbersLike,
+    q: inputs.NumbersLike,
+    p: inputs.NumbersLike,
+    step_size: inputs.NumbersLike,
     steps: int | None = None,
     time: Number | None = None,
-    parameters: Mapping[str, NumbersLike] | None = None,
+    parameters: Mapping[str, inputs.NumbersLike] | None = None,
     observables: Sequence[str] = CLOSED_FORM,
     progress: Progress = None,
     **options: Any,
@@ -205,12 +191,12 @@ def sweep(
         )
     values = _list_parameters(parameters)
     # The first value of each parameter serves to parse H once; each run substitutes its own values.
-    hamiltonian = hamiltonian_from(system, {name: x[0] for name, x in values.items()})
+    hamiltonian = inputs.hamiltonian_from(system, {name: x[0] for name, x in values.items()})
     axes: dict[str, list[Any]] = {
-        "scheme": schemes_from(scheme, hamiltonian),
-        "step_size": [positive(x, "step_size") for x in as_list("step_size", step_size)],
-        "q": [rational(x, "q") for x in as_list("q", q)],
-        "p": [rational(x, "p") for x in as_list("p", p)],
+        "scheme": inputs.schemes_from(scheme, hamiltonian),
+        "step_size": [positive(x, "step_size") for x in inputs.as_list("step_size", step_size)],
+        "q": [rational(x, "q") for x in inputs.as_list("q", q)],
+        "p": [rational(x, "p") for x in inputs.as_list("p", p)],
         **values,
     }
     combinations = list(product(*axes.values()))
@@ -243,7 +229,9 @@ def _list_parameters(parameters: Mapping[str, Any] | None) -> dict[str, list[Any
     if clashes:
         raise InputError("parameter", min(clashes), "is no parameter's name")
     return {
-        name: [rational(x, f"parameter {name}") for x in as_list(f"parameter {name}", values)]
+        name: [
+            rational(x, f"parameter {name}") for x in inputs.as_list(f"parameter {name}", values)
+        ]
         for name, values in (parameters or {}).items()
     }
 

@@ -9,47 +9,35 @@ from collections.abc import Sequence
 from typing import Any, overload
 
 from verify.arithmetic.exact import Number, NumberOrList, whole
-from verify.calls.inputs import (
-    ParametersLike,
-    SchemeLike,
-    SystemLike,
-    as_list,
-    hamiltonian_from,
-    scheme_name,
-)
+from verify.calls import inputs
 from verify.calls.progress import Progress, progress_of
 from verify.hamiltonians.run_domain import check_start
-from verify.scenes.results.separation import (
-    SeparationGrid,
-    SeparationGridInDegrees,
-    SeparationInDegrees,
-    SeparationResult,
-)
+from verify.scenes.results import separation
 from verify.scenes.values import AUTO, steps_from
 from verify.studies.separation import truncation_and_rounding as study
 
 
 @overload
 def separate(
-    system: SystemLike, scheme: SchemeLike, *, q: Number, p: Number, step_size: Number,
-    steps: int | None = None, time: Number | None = None, t0: Number = 0,
-    parameters: ParametersLike = None, digits: int = 17, arithmetic: str = AUTO,
+    system: inputs.SystemLike, scheme: inputs.SchemeLike, *, q: Number, p: Number,
+    step_size: Number, steps: int | None = None, time: Number | None = None, t0: Number = 0,
+    parameters: inputs.ParametersLike = None, digits: int = 17, arithmetic: str = AUTO,
     progress: Progress = None,
-) -> SeparationResult: ...  # fmt: skip
+) -> separation.SeparationResult: ...  # fmt: skip
 
 
 @overload
 def separate(
-    system: SystemLike, scheme: SchemeLike, *, q: NumberOrList, p: NumberOrList, step_size: Number,
-    steps: int | None = None, time: Number | None = None, t0: Number = 0,
-    parameters: ParametersLike = None, digits: int = 17, arithmetic: str = AUTO,
+    system: inputs.SystemLike, scheme: inputs.SchemeLike, *, q: NumberOrList, p: NumberOrList,
+    step_size: Number, steps: int | None = None, time: Number | None = None, t0: Number = 0,
+    parameters: inputs.ParametersLike = None, digits: int = 17, arithmetic: str = AUTO,
     progress: Progress = None,
-) -> SeparationResult | SeparationInDegrees: ...  # fmt: skip
+) -> separation.SeparationResult | separation.SeparationInDegrees: ...  # fmt: skip
 
 
 def separate(
-    system: SystemLike,
-    scheme: SchemeLike,
+    system: inputs.SystemLike,
+    scheme: inputs.SchemeLike,
     *,
     q: NumberOrList,
     p: NumberOrList,
@@ -57,11 +45,11 @@ def separate(
     steps: int | None = None,
     time: Number | None = None,
     t0: Number = 0,
-    parameters: ParametersLike = None,
+    parameters: inputs.ParametersLike = None,
     digits: int = 17,
     arithmetic: str = AUTO,
     progress: Progress = None,
-) -> SeparationResult | SeparationInDegrees:
+) -> separation.SeparationResult | separation.SeparationInDegrees:
     """Split Λ of a float64 run from (q, p) into truncation and four kinds of rounding.
 
     An H that depends on time has five kinds. In n degrees of freedom q and p are lists of n
@@ -91,25 +79,25 @@ def separate(
 
 @overload
 def separate_grid(
-    system: SystemLike, scheme: SchemeLike, *, q: Number, p: Number, step_sizes: Sequence[Number],
-    steps: int | None = None, time: Number | None = None, t0: Number = 0,
-    parameters: ParametersLike = None, digits: int = 17, arithmetic: str = AUTO,
-    progress: Progress = None,
-) -> SeparationGrid: ...  # fmt: skip
+    system: inputs.SystemLike, scheme: inputs.SchemeLike, *, q: Number, p: Number,
+    step_sizes: Sequence[Number], steps: int | None = None, time: Number | None = None,
+    t0: Number = 0, parameters: inputs.ParametersLike = None, digits: int = 17,
+    arithmetic: str = AUTO, progress: Progress = None,
+) -> separation.SeparationGrid: ...  # fmt: skip
 
 
 @overload
 def separate_grid(
-    system: SystemLike, scheme: SchemeLike, *, q: NumberOrList, p: NumberOrList,
+    system: inputs.SystemLike, scheme: inputs.SchemeLike, *, q: NumberOrList, p: NumberOrList,
     step_sizes: Sequence[Number], steps: int | None = None, time: Number | None = None,
-    t0: Number = 0, parameters: ParametersLike = None, digits: int = 17, arithmetic: str = AUTO,
-    progress: Progress = None,
-) -> SeparationGrid | SeparationGridInDegrees: ...  # fmt: skip
+    t0: Number = 0, parameters: inputs.ParametersLike = None, digits: int = 17,
+    arithmetic: str = AUTO, progress: Progress = None,
+) -> separation.SeparationGrid | separation.SeparationGridInDegrees: ...  # fmt: skip
 
 
 def separate_grid(
-    system: SystemLike,
-    scheme: SchemeLike,
+    system: inputs.SystemLike,
+    scheme: inputs.SchemeLike,
     *,
     q: NumberOrList,
     p: NumberOrList,
@@ -117,11 +105,11 @@ def separate_grid(
     steps: int | None = None,
     time: Number | None = None,
     t0: Number = 0,
-    parameters: ParametersLike = None,
+    parameters: inputs.ParametersLike = None,
     digits: int = 17,
     arithmetic: str = AUTO,
     progress: Progress = None,
-) -> SeparationGrid | SeparationGridInDegrees:
+) -> separation.SeparationGrid | separation.SeparationGridInDegrees:
     """Separate for several step sizes, and find the one below which rounding is the larger part.
 
     The arguments are those of `verify.separate`, with a list of step sizes; each h has `steps` or
@@ -130,8 +118,8 @@ def separate_grid(
     `closed_form` are the step sizes at which the parts cross, in these two evaluations. Raises
     InputError as `separate` does, and for a repeated step size.
     """
-    hamiltonian = hamiltonian_from(system, parameters)
-    name, sizes = scheme_name(scheme, hamiltonian), as_list("step_sizes", step_sizes)
+    hamiltonian = inputs.hamiltonian_from(system, parameters)
+    name, sizes = inputs.scheme_name(scheme, hamiltonian), inputs.as_list("step_sizes", step_sizes)
     steps = None if steps is None else whole("steps", steps, 1)
     # A separation takes several runs of N steps; the bar counts the steps of all of them.
     total = study.RUNS * sum(count for _, count in study.count_steps(sizes, steps, time))

@@ -8,15 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from verify.arithmetic.exact import Number, NumberOrList
-from verify.calls.inputs import (
-    NumbersLike,
-    ParametersLike,
-    SchemesLike,
-    SystemLike,
-    as_list,
-    perform,
-    scene_of,
-)
+from verify.calls import inputs
 from verify.calls.progress import Progress, progress_of
 from verify.errors import InputError
 from verify.scenes.results.regions import FlowResult
@@ -30,14 +22,14 @@ _ORIGIN = (0, 0)
 
 
 def flow(
-    system: SystemLike,
-    scheme: SchemesLike,
+    system: inputs.SystemLike,
+    scheme: inputs.SchemesLike,
     *,
     step_size: Number,
     steps: int | Iterable[int] | None = None,
-    times: NumbersLike | None = None,
+    times: inputs.NumbersLike | None = None,
     t0: Number = 0,
-    parameters: ParametersLike = None,
+    parameters: inputs.ParametersLike = None,
     shape: str | None = None,
     polygon: Sequence[tuple[Number, Number]] | None = None,
     path: str | None = None,
@@ -89,26 +81,26 @@ def flow(
         "plane": plane,
         "scale": scale,
         "step_size": step_size,
-        "steps": None if steps is None else as_list("steps", steps),
-        "times": None if times is None else as_list("times", times),
+        "steps": None if steps is None else inputs.as_list("steps", steps),
+        "times": None if times is None else inputs.as_list("times", times),
         "exact": exact,
         "mean_lambda": mean_lambda,
         "digits": digits,
     }
-    scene = scene_of(system, scheme, parameters, t0=t0, flow=[section])
-    return flows_of(scene, perform(scene, need_flows, workers))[0]
+    scene = inputs.scene_of(system, scheme, parameters, t0=t0, flow=[section])
+    return flows_of(scene, inputs.perform(scene, need_flows, workers))[0]
 
 
 def stability(
-    system: SystemLike,
-    scheme: SchemesLike,
+    system: inputs.SystemLike,
+    scheme: inputs.SchemesLike,
     *,
     q: NumberOrList,
     p: NumberOrList,
-    step_size: NumbersLike,
+    step_size: inputs.NumbersLike,
     steps: int | None = None,
     time: Number | None = None,
-    parameters: ParametersLike = None,
+    parameters: inputs.ParametersLike = None,
     t0: Number | None = None,
     workers: int = 1,
 ) -> tuple[StabilityResult, ...]:
@@ -129,25 +121,25 @@ def stability(
     [('euler', 'unstable: scheme'), ('stormer-verlet', 'stable')]
     """
     section = {
-        "step_sizes": as_list("step_size", step_size),
+        "step_sizes": inputs.as_list("step_size", step_size),
         "initial_values": [{"q": q, "p": p}],
         "steps": steps,
         "time": time,
     }
-    scene = scene_of(system, scheme, parameters, t0=t0, stability=[section])
-    return findings_of([scene], perform(scene, need_stability, workers)).stability
+    scene = inputs.scene_of(system, scheme, parameters, t0=t0, stability=[section])
+    return findings_of([scene], inputs.perform(scene, need_stability, workers)).stability
 
 
 def bench(
-    system: SystemLike,
-    scheme: SchemesLike,
+    system: inputs.SystemLike,
+    scheme: inputs.SchemesLike,
     *,
     q: NumberOrList,
     p: NumberOrList,
-    step_sizes: NumbersLike,
+    step_sizes: inputs.NumbersLike,
     time: Number,
     t0: Number = 0,
-    parameters: ParametersLike = None,
+    parameters: inputs.ParametersLike = None,
     repeats: int = 5,
     peers: bool = False,
     progress: Progress = None,
@@ -169,7 +161,7 @@ def bench(
     of freedom, and the run times. `verify.plot_work_precision` draws it. Raises InputError, one
     line.
     """
-    sizes = as_list("step_sizes", step_sizes)
+    sizes = inputs.as_list("step_sizes", step_sizes)
     if len(sizes) < 2:
         raise InputError("step_sizes", step_sizes, "is one; an order takes two at least")
     section = {
@@ -179,7 +171,7 @@ def bench(
         "repeats": repeats,
         "peers": None if peers else False,
     }
-    scene = scene_of(system, scheme, parameters, t0=t0, work_precision=section)
+    scene = inputs.scene_of(system, scheme, parameters, t0=t0, work_precision=section)
     task = work_precision_task(scene)
     points = len(task.schemes) * len(task.step_sizes)
     # One unit of the bar is the error of one point.

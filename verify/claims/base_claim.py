@@ -179,26 +179,20 @@ class Claim(Frozen):
         domain: FormulaDomain = EVERYWHERE,
     ) -> ClaimResult:
         """Build the claim's result; `details` is a table whose first row is its head."""
-        return ClaimResult(
-            id=self.id,
-            kind=self.kind,
-            source=self.source,
-            section=self.section,
+        return ClaimResult.from_object(
+            self,
             statement=read_prose(self.statement),
             statement_id=self.reading_of,
             reading=read_prose(self.reading),
-            standing=self.standing,
             repaired=read_prose(self.repaired),
             repairs=self.repairs or (self.reading_of if self.repaired else ""),
-            effect=self.effect,
-            scene=self.scene,
             verdict=verdict,
             evidence=prose(evidence),
             domain=domain.texts,
             details=tuple(tuple(map(prose, row)) for row in details),
             proof=prose(proof),
             remark=read_prose(self.remark),
-            confirmed_by=self.confirmed_by,
+            checked_by=(),  # added by the caller: `checked_by` of a claim takes its result
         )
 
     # -- the same of other scenes -----------------------------------------------------------------

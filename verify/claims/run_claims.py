@@ -20,23 +20,12 @@ from verify.claims.kinds import models
 from verify.claims.quantities import QUANTITIES, NoValueError, Quantity
 from verify.errors import NOT_GIVEN, InputError
 from verify.execution.task import Task
+from verify.scenes import values
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
-from verify.scenes.values import (
-    AUTO,
-    AnyStart,
-    Coordinates,
-    Digits,
-    InitialState,
-    InitialValue,
-    Start,
-    Steps,
-    StepSize,
-    Time,
-)
 from verify.studies.kinds.grid import grid_tasks
 from verify.verdict import Verdict
 
@@ -47,21 +36,21 @@ _MORE_DIGITS = 5  # than are printed
 class RunKeys(Frozen):
     """The keys that select runs; None if the claim does not specify them."""
 
-    step_size: StepSize | None = None
+    step_size: values.StepSize | None = None
     """The step size h."""
-    step_sizes: tuple[StepSize, ...] | None = None
+    step_sizes: tuple[values.StepSize, ...] | None = None
     """The step sizes, if there are several."""
-    time: Time | None = None
+    time: values.Time | None = None
     """The length of each run, N = T/h rounded down; or `steps`."""
-    steps: Steps | None = None
+    steps: values.Steps | None = None
     """The number of steps of each run; or `time`."""
-    q: Coordinates | None = None
+    q: values.Coordinates | None = None
     """The initial displacement; in n degrees of freedom a list."""
-    p: Coordinates | None = None
+    p: values.Coordinates | None = None
     """The initial momentum; as q."""
-    initial_values: tuple[Start, ...] | None = None
+    initial_values: tuple[values.Start, ...] | None = None
     """The initial values, if there are several."""
-    digits: Digits | None = None
+    digits: values.Digits | None = None
     """Certified digits; by default 20, and five more than are printed."""
 
 
@@ -129,7 +118,7 @@ class RunClaim(Claim):
             **_length(keys, base),
             step_sizes=_step_sizes(keys, base),
             initial_values=_initial_values(keys, base),
-            arithmetic=AUTO,
+            arithmetic=values.AUTO,
             digits=keys.digits or max(_LEAST_DIGITS, longest + _MORE_DIGITS),
             observables=self.observables(),
         )
@@ -283,7 +272,7 @@ def _step_sizes(keys: RunKeys, base: Grid | None) -> tuple[Any, ...]:
     return keys.step_sizes or (base.step_sizes if base else ())
 
 
-def _initial_values(keys: RunKeys, base: Grid | None) -> tuple[AnyStart, ...]:
+def _initial_values(keys: RunKeys, base: Grid | None) -> tuple[values.AnyStart, ...]:
     if keys.q is None and keys.p is None:
         if keys.initial_values is None and base is None:
             raise InputError("q", NOT_GIVEN, "is missing: give q and p, or initial_values")
@@ -293,7 +282,7 @@ def _initial_values(keys: RunKeys, base: Grid | None) -> tuple[AnyStart, ...]:
     if keys.q is None or keys.p is None:
         raise InputError("p" if keys.p is None else "q", NOT_GIVEN, "is missing: give q and p")
     if isinstance(keys.q, tuple) and isinstance(keys.p, tuple):
-        return (InitialState(q=keys.q, p=keys.p),)
+        return (values.InitialState(q=keys.q, p=keys.p),)
     if isinstance(keys.q, tuple) or isinstance(keys.p, tuple):
         raise InputError("q, p", NOT_GIVEN, "give a number each, or a list each")
-    return (InitialValue(q=keys.q, p=keys.p),)
+    return (values.InitialValue(q=keys.q, p=keys.p),)

@@ -8,6 +8,7 @@ import click
 
 from verify.commands.shared.destinations import OUT_FILE
 from verify.commands.shared.execution_options import cache_option, cluster_option, progress_bar
+from verify.commands.shared.option import flag, option
 from verify.commands.shared.output import CommandAnswer, answering, plain_json
 from verify.commands.shared.scene_options import scenes_of, start_options, with_one_line
 from verify.errors import NOT_GIVEN, InputError
@@ -33,14 +34,12 @@ _ERRORS_IN_DEGREES = {
 
 @click.command()
 @with_one_line(
-    click.option("--time", metavar="T", help="The end time T; N is T/H rounded down."),
-    click.option("--repeats", type=int, metavar="N", help="Timings of each point.  [default: 5]"),
-    click.option("--peers", is_flag=True, help="Measure solvers of other libraries too."),
+    option("--time", "T", "The end time T; N is T/H rounded down."),
+    option("--repeats", "N", "Timings of each point.  [default: 5]", type=int),
+    flag("--peers", "Measure solvers of other libraries too."),
 )
 @start_options
-@click.option(
-    "-o", "--output", type=OUT_FILE, metavar="FILE.svg", help="Draw the figure into this file."
-)
+@option("-o --output", "FILE.svg", "Draw the figure into this file.", type=OUT_FILE)
 @cluster_option
 @answering
 @cache_option

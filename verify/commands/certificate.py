@@ -9,7 +9,9 @@ import click
 from verify.commands.shared.command_group import CommandGroup
 from verify.commands.shared.destinations import OUT_FILE, OUT_FOLDER
 from verify.commands.shared.input import PATH
+from verify.commands.shared.option import flag, option
 from verify.commands.shared.output import CommandAnswer, answering
+from verify.files import open_regular_file, write_atomically
 
 if TYPE_CHECKING:
     from verify.proof.certificates.established_statement import EstablishedStatement
@@ -43,7 +45,6 @@ def _check_opens(context: click.Context, parameter: click.Parameter, file: Path)
 
     As a callback this runs before click reports a missing --coq.
     """
-    from verify.files import open_regular_file
 
     with open_regular_file(file):
         return file
@@ -51,13 +52,10 @@ def _check_opens(context: click.Context, parameter: click.Parameter, file: Path)
 
 @certificate.command()
 @click.argument("file", type=PATH, metavar="FILE", callback=_check_opens)
-@click.option(
-    "--coq", type=OUT_FILE, required=True, metavar="OUT.v", help="Write the proof to this file."
-)
-@click.option(
+@option("--coq", "OUT.v", "Write the proof to this file.", type=OUT_FILE, required=True)
+@flag(
     "--beside-theory",
-    is_flag=True,
-    help="Import the theory, which `verify certificate theory` installs, instead of including it.",
+    "Import the theory, which `verify certificate theory` installs, instead of including it.",
 )
 @answering
 def export(file: Path, coq: Path, beside_theory: bool) -> CommandAnswer:
@@ -68,7 +66,6 @@ def export(file: Path, coq: Path, beside_theory: bool) -> CommandAnswer:
     \b
     verify certificate export lie2.json --coq lie2.v
     """
-    from verify.files import write_atomically
     from verify.proof.assistant.certificate_export import check_file_name, export_certificate
 
     check_file_name(coq)

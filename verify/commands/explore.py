@@ -10,6 +10,7 @@ from verify.commands.hunt import DEFAULT_STEPS, hunt
 from verify.commands.shared.destinations import OUT_FOLDER, ensure_writable_later
 from verify.commands.shared.execution_options import kept_tasks, with_tasks
 from verify.commands.shared.input import FILE, SCHEME
+from verify.commands.shared.option import flag, option
 from verify.commands.shared.output import CommandAnswer
 from verify.errors import InputError
 
@@ -23,55 +24,36 @@ _SEED_COUNT = 2**32
 
 @click.command()
 @click.argument("claims", type=FILE, metavar="[CLAIMS]", required=False)
-@click.option(
-    "--property",
-    "names",
+@option(
+    "--property names",
+    "NAME",
+    "Only this property; repeatable. A wrong name lists them.",
     multiple=True,
-    metavar="NAME",
-    help="Only this property; repeatable. A wrong name lists them.",
 )
-@click.option("--examples", type=int, default=1000, metavar="N", help="The number of drawn scenes.")
-@click.option("--seed", type=int, metavar="S", help="The same seed draws the same scenes.")
-@click.option(
-    "--scheme", "schemes", type=SCHEME, multiple=True, metavar="NAME", help="Only this; repeatable."
-)
-@click.option(
-    "--kind",
-    "kinds",
+@option("--examples", "N", "The number of drawn scenes.", type=int, default=1000)
+@option("--seed", "S", "The same seed draws the same scenes.", type=int)
+@option("--scheme schemes", "NAME", "Only this; repeatable.", type=SCHEME, multiple=True)
+@option(
+    "--kind kinds",
+    "KIND",
+    "polynomial, trigonometric, exponential or rational H only; repeatable.",
     multiple=True,
-    metavar="KIND",
-    help="polynomial, trigonometric, exponential or rational H only; repeatable.",
 )
-@click.option(
-    "--degree", type=int, default=6, metavar="D", help="The highest degree of polynomials."
-)
-@click.option(
-    "--degrees",
-    "degrees_of_freedom",
-    type=int,
-    default=1,
-    metavar="N",
-    help="Degrees of freedom, 1 … 8: H(p1 … pN, q1 … qN).",
-)
-@click.option("--time-dependent", is_flag=True, help="Draw H(p, q, t) and a start time t₀.")
-@click.option(
+@option("--degree", "D", "The highest degree of polynomials.", type=int, default=6)
+@option("--degrees", "N", "Degrees of freedom, 1 … 8: H(p1 … pN, q1 … qN).", type=int, default=1)
+@flag("--time-dependent", "Draw H(p, q, t) and a start time t₀.")
+@option(
     "--maximise",
-    metavar="MEASURE",
-    help="Hunt for the worst scenes instead: rounding-share, digits-lost, growth or defect.",
+    "MEASURE",
+    "Hunt for the worst scenes instead: rounding-share, digits-lost, growth or defect.",
 )
-@click.option(
-    "--steps",
-    type=int,
-    metavar="N",
-    help="The number of steps of each hunted scene.  [default: 100]",
-)
-@click.option(
-    "-o",
-    "--output",
+@option("--steps", "N", "The number of steps of each hunted scene.  [default: 100]", type=int)
+@option(
+    "-o --output",
+    "DIR",
+    "The folder for scenes that fail; those in it are checked again first.",
     type=OUT_FOLDER,
     default=Path("explored"),
-    metavar="DIR",
-    help="The folder for scenes that fail; those in it are checked again first.",
 )
 @with_tasks
 def explore(
@@ -79,16 +61,12 @@ def explore(
     names: tuple[str, ...],
     examples: int,
     seed: int | None,
-    schemes: tuple[str, ...],
-    kinds: tuple[str, ...],
-    degree: int,
-    degrees_of_freedom: int,
-    time_dependent: bool,
     maximise: str | None,
     steps: int | None,
     output: Path,
     keep: Path | None,
     placement: "Placement",
+    **space: Any,
 ) -> CommandAnswer:
     """Hold properties of every scene, or the claims in CLAIMS, against many drawn scenes.
 
@@ -117,13 +95,8 @@ def explore(
     # The seed is printed, so that a run without --seed can be repeated.
     seed = random.SystemRandom().randrange(_SEED_COUNT) if seed is None else seed
     checks, left_out = _select_checks(claims, names) if maximise is None else ({}, {})
-    sample_space = SampleSpace(
-        kinds=kinds,
-        degree=degree,
-        schemes=schemes or _schemes_of_claims(checks),
-        time_dependent=time_dependent,
-        degrees=degrees_of_freedom,
-    )
+    space["schemes"] = space["schemes"] or _schemes_of_claims(checks)
+    sample_space = SampleSpace(**space)
     if maximise is not None:
         if claims or names:
             raise InputError(

@@ -8,6 +8,7 @@ import click
 
 from verify.commands.shared.destinations import OUT_FILE
 from verify.commands.shared.input import scheme_option, with_hamiltonian
+from verify.commands.shared.option import option
 from verify.commands.shared.output import CommandAnswer, answering
 
 if TYPE_CHECKING:
@@ -18,27 +19,15 @@ if TYPE_CHECKING:
 @with_hamiltonian
 @scheme_option
 @answering
-@click.option(
-    "--language",
-    default="python",
-    show_default=True,
-    metavar="NAME",
-    help="c, python, julia or latex.",
-)
-@click.option(
+@option("--language", "NAME", "c, python, julia or latex.", default="python", show_default=True)
+@option(
     "--name",
+    "NAME",
+    "The name of the function that makes a step.",
     default="step",
     show_default=True,
-    metavar="NAME",
-    help="The name of the function that makes a step.",
 )
-@click.option(
-    "-o",
-    "--output",
-    type=OUT_FILE,
-    metavar="FILE",
-    help="Write to this file instead of standard output.",
-)
+@option("-o --output", "FILE", "Write to this file instead of standard output.", type=OUT_FILE)
 def export(
     hamiltonian: "Hamiltonian", scheme: str, language: str, name: str, output: Path | None
 ) -> CommandAnswer:

@@ -9,6 +9,7 @@ import click
 
 from verify.arithmetic.exact import short
 from verify.commands.shared.execution_options import perform, with_tasks
+from verify.commands.shared.option import option
 from verify.commands.shared.output import CommandAnswer, print_once
 from verify.commands.shared.scene_options import scenes_of, with_one_line
 from verify.errors import NOT_GIVEN, InputError
@@ -20,30 +21,22 @@ if TYPE_CHECKING:
 
 @click.command()
 @with_one_line(
-    click.option(
-        "--steps",
-        type=int,
-        multiple=True,
-        metavar="N",
-        help="At least 1; repeatable; or give --time.",
-    ),
-    click.option(
-        "--time", "times", multiple=True, metavar="T", help="N is T/H rounded down; repeatable."
-    ),
-    click.option("--shape", metavar="NAME", help="circle, square or cat.  [default: circle]"),
-    click.option(
+    option("--steps", "N", "At least 1; repeatable; or give --time.", type=int, multiple=True),
+    option("--time times", "T", "N is T/H rounded down; repeatable.", multiple=True),
+    option("--shape", "NAME", "circle, square or cat.  [default: circle]"),
+    option(
         "--q",
-        metavar="Q",
-        help="The displacement of the shape's centre; for q1, q2, … as 0.1,0.2.  [default: 0]",
+        "Q",
+        "The displacement of the shape's centre; for q1, q2, … as 0.1,0.2.  [default: 0]",
     ),
-    click.option("--p", metavar="P", help="The momentum of the centre, as --q.  [default: 0]"),
-    click.option(
+    option("--p", "P", "The momentum of the centre, as --q.  [default: 0]"),
+    option(
         "--plane",
+        "I",
+        "In n degrees of freedom the shape lies in (qI, pI).  [default: 1]",
         type=int,
-        metavar="I",
-        help="In n degrees of freedom the shape lies in (qI, pI).  [default: 1]",
     ),
-    click.option("--scale", metavar="S", help="The factor of the shape's size.  [default: 1]"),
+    option("--scale", "S", "The factor of the shape's size.  [default: 1]"),
 )
 @with_tasks
 def flow(

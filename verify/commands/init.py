@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from verify.commands.shared.destinations import OUT_FILE
+from verify.commands.shared.option import option
 from verify.commands.shared.output import CommandAnswer, answering
 from verify.content import content
 from verify.errors import InputError
@@ -19,9 +20,7 @@ _NEXT = {
 
 @click.command()
 @click.argument("kind", metavar="claims|scene|table", type=click.Choice([*_NEXT]))
-@click.option(
-    "-o", "--output", type=OUT_FILE, metavar="FILE", help="The file.  [default: KIND.toml]"
-)
+@option("-o --output", "FILE", "The file.  [default: KIND.toml]", type=OUT_FILE)
 @answering
 def init(kind: str, output: Path | None) -> CommandAnswer:
     """Write a commented file to begin with: claims, a scene, or a table of coefficients.

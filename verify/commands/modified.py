@@ -1,6 +1,5 @@
 """The command `verify modified`, for one Hamiltonian or for every one."""
 
-import time
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -12,6 +11,7 @@ from verify.commands.shared.input import (
     one_or_every,
     scheme_option,
 )
+from verify.commands.shared.option import option
 from verify.commands.shared.output import CommandAnswer, answering, cut, pick
 
 if TYPE_CHECKING:
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 @hamiltonian_options
 @scheme_option
 @answering
-@click.option(
+@option(
     "--order",
+    "N",
+    "The highest power of h in H̃: 1 … 10, for every H 1 … 8.",
     type=int,
     default=4,
     show_default=True,
-    metavar="N",
-    help="The highest power of h in H̃: 1 … 10, for every H 1 … 8.",
 )
 @every_options
 def modified(
@@ -45,18 +45,17 @@ def modified(
     """
     from verify.calls.prove import modified_hamiltonian
 
-    start_time = time.perf_counter()
     hamiltonian = one_or_every(every_hamiltonian, options, separable=separable)
     equation = modified_hamiltonian(scheme, hamiltonian, order, separable=separable)
-    seconds = f"{time.perf_counter() - start_time:.6f}"
     return CommandAnswer(
-        lambda: _json(equation, seconds),
+        lambda: _json(equation),
         lambda: _print(equation),
         failed=equation.verdict == "REFUTED",
+        timed=True,
     )
 
 
-def _json(equation: "ModifiedEquation", seconds: str) -> dict[str, Any]:
+def _json(equation: "ModifiedEquation") -> dict[str, Any]:
     non_hamiltonian = equation.first_not_hamiltonian
     return {
         **pick(equation, "verdict", "reason", "hamiltonian", "scheme", "order"),
@@ -66,7 +65,6 @@ def _json(equation: "ModifiedEquation", seconds: str) -> dict[str, Any]:
         "first_not_hamiltonian": non_hamiltonian.power if non_hamiltonian else None,
         "divergence_is_leading_delta_j": equation.area,
         "domain": equation.domain.texts,
-        "seconds": seconds,
     }
 
 

@@ -1,6 +1,5 @@
 """The command `verify prove`, for one Hamiltonian or for every one."""
 
-import time
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,15 +8,12 @@ import click
 
 from verify.commands.shared import proof_output as show
 from verify.commands.shared.destinations import OUT_FILE
-from verify.commands.shared.input import (
-    every_options,
-    one_or_every,
-    scheme_option,
-    system_options,
-)
+from verify.commands.shared.input import every_options, one_or_every, scheme_option, system_options
+from verify.commands.shared.option import flag, option
 from verify.commands.shared.output import CommandAnswer, answering, cut, pick, print_line
 from verify.commands.shared.structure_options import compose_scheme, split_option, structure_options
 from verify.errors import NOT_GIVEN, InputError
+from verify.schemes import get
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,23 +32,19 @@ if TYPE_CHECKING:
 @scheme_option
 @answering
 @every_options
-@click.option(
-    "--time-dependent",
-    is_flag=True,
-    help="With --every-hamiltonian: for every H(p, q, t), or T(p, t) + V(q, t).",
-)
-@click.option(
+@flag("--time-dependent", "With --every-hamiltonian: for every H(p, q, t), or T(p, t) + V(q, t).")
+@option(
     "--degrees",
+    "N",
+    "With --every-hamiltonian: in N degrees of freedom; without it the names in H decide.",
     type=int,
-    metavar="N",
-    help="With --every-hamiltonian: in N degrees of freedom; without it the names in H decide.",
 )
-@click.option(
+@option(
     "--certificate",
-    type=OUT_FILE,
-    metavar="FILE",
-    help="Write the identities of the proof, for `verify certificate check`; if H has functions "
+    "FILE",
+    "Write the identities of the proof, for `verify certificate check`; if H has functions "
     "other than sin, cos, exp and quotients, those of the proof for every H.",
+    type=OUT_FILE,
 )
 @structure_options
 @split_option
@@ -111,17 +103,15 @@ def _prove_structures(
     hamiltonian: "Hamiltonian", scheme: str, keeps: "KeepsRequest"
 ) -> CommandAnswer:
     from verify.proof.structures.structures_proof import prove_structures
-    from verify.schemes import get
     from verify.structures.reading import KeepsRequest, read_structures
 
-    start_time = time.perf_counter()
     integrator = get(scheme)
     request = keeps or KeepsRequest(keeps=("volume",))
     claims = read_structures(request, hamiltonian)
     proof = prove_structures(integrator.step_map(hamiltonian), claims, integrator)
     texts = {**hamiltonian.texts, "scheme": integrator.name}
     print_head = partial(show.print_head, hamiltonian, integrator.name, proof)
-    return _answer_structures(proof, texts, print_head, start_time)
+    return _answer_structures(proof, texts, print_head)
 
 
 def _prove_structures_of_every(
@@ -129,7 +119,6 @@ def _prove_structures_of_every(
 ) -> CommandAnswer:
     from verify.proof.structures.structures_for_every_h import prove_structures_for_every_h
 
-    start_time = time.perf_counter()
     proof = prove_structures_for_every_h(
         scheme, keeps, separable, timed=timed, degrees=1 if degrees is None else degrees
     )
@@ -140,30 +129,27 @@ def _prove_structures_of_every(
         print_line("scheme", scheme)
 
     texts = {"hamiltonian": proof.quantifier, "scheme": scheme}
-    return _answer_structures(proof, texts, print_head, start_time)
+    return _answer_structures(proof, texts, print_head)
 
 
 def _answer_structures(
     proof: "StructuresProof",
     texts: dict[str, Any],
     print_head: "Callable[[], None]",
-    start_time: float,
 ) -> CommandAnswer:
     from verify.commands.shared.structure_output import print_structures, structure_json
-
-    seconds = f"{time.perf_counter() - start_time:.6f}"
 
     def data() -> dict[str, Any]:
         rows = [{**structure_json(x), "example": x.example or None} for x in proof.keeps]
         head = {**pick(proof, "verdict", "reason"), **texts, **show.agreement_json(proof)}
-        return {**head, "keeps": rows, "seconds": seconds}
+        return {**head, "keeps": rows}
 
     def show_proof() -> None:
         print_head()
         print_structures(proof.keeps)
         click.echo(f"  the map  agrees with the exact flow {show.describe_agreement(proof)}")
 
-    return CommandAnswer(data, show_proof, failed=proof.verdict == "REFUTED")
+    return CommandAnswer(data, show_proof, failed=proof.verdict == "REFUTED", timed=True)
 
 
 def _prove_every(
@@ -171,11 +157,9 @@ def _prove_every(
 ) -> CommandAnswer:
     from verify.proof.order_for_every_h import prove_for_every_h
 
-    start_time = time.perf_counter()
     proof = prove_for_every_h(
         scheme, separable, timed=timed, degrees=1 if degrees is None else degrees
     )
-    seconds = f"{time.perf_counter() - start_time:.6f}"
     if certificate is not None:
         from verify.proof.certificates.certification import certify_for_every_h
 
@@ -184,9 +168,10 @@ def _prove_every(
     # Scripts read the lines of a proof in the plane, so their older form stays.
     print_in_degrees = partial(show.print_symplectic, texts, proof.scheme)
     return CommandAnswer(
-        lambda: show.proof_json(texts, proof.scheme, proof, seconds, **show.checks_json(proof)),
+        lambda: show.proof_json(texts, proof.scheme, proof, **show.checks_json(proof)),
         lambda: (_print_every if proof.planar else print_in_degrees)(proof),
         failed=proof.verdict == "REFUTED",
+        timed=True,
     )
 
 
@@ -195,15 +180,12 @@ def _prove_one(hamiltonian: "Hamiltonian", scheme: str, certificate: Path | None
     from verify.proof.order_for_one_h import prove as prove_order
     from verify.proof.plane.potential import potential_of
     from verify.proof.special_values import special_values
-    from verify.schemes import get
 
-    start_time = time.perf_counter()
     integrator = get(scheme)
     proof = prove_order(integrator.step_map(hamiltonian), integrator)
     # In n degrees of freedom the proof itself says whether its leading coefficient telescopes.
     potential = potential_of(proof, integrator) if proof.planar else None
     special = () if potential is None else special_values(proof, integrator)
-    seconds = f"{time.perf_counter() - start_time:.6f}"
     if certificate is not None:
         _write_certificate(
             _build_certificate(
@@ -226,9 +208,10 @@ def _prove_one(hamiltonian: "Hamiltonian", scheme: str, certificate: Path | None
             show.print_proof(hamiltonian, integrator.name, proof, potential, special)
 
     return CommandAnswer(
-        lambda: show.proof_json(hamiltonian.texts, integrator.name, proof, seconds, **extra_json()),
+        lambda: show.proof_json(hamiltonian.texts, integrator.name, proof, **extra_json()),
         show_proof,
         failed=proof.verdict == "REFUTED",
+        timed=True,
     )
 
 

@@ -9,15 +9,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.reference_compare import compare
+from verify.commands.shared import execution_options
 from verify.commands.shared.command_group import CommandGroup
 from verify.commands.shared.destinations import OUT_FOLDER, ensure_writable
-from verify.commands.shared.execution_options import (
-    counting_bar,
-    perform,
-    with_placement,
-    with_tasks,
-)
 from verify.commands.shared.input import FILE, PATH
+from verify.commands.shared.option import flag, option
 from verify.commands.shared.output import CommandAnswer, answering, pick
 from verify.errors import NOT_GIVEN, InputError, without_controls
 
@@ -39,17 +35,14 @@ reference.add_command(compare)
 
 @reference.command()
 @click.argument("scenes", type=FILE, nargs=-1, metavar="[SCENE]...")
-@click.option(
-    "-o",
-    "--output",
+@option(
+    "-o --output",
+    "DIR",
+    "The folder to write into.  [default: SCENE-reference, or reference-data]",
     type=OUT_FOLDER,
-    metavar="DIR",
-    help="The folder to write into.  [default: SCENE-reference, or reference-data]",
 )
-@click.option(
-    "--parquet", is_flag=True, help="Write the tables as Parquet too, which needs pyarrow."
-)
-@with_tasks
+@flag("--parquet", "Write the tables as Parquet too, which needs pyarrow.")
+@execution_options.with_tasks
 def make(
     scenes: tuple[str, ...],
     output: Path | None,
@@ -80,7 +73,9 @@ def make(
     folder = output or Path(f"{sources[0].scene.name}-reference" if scenes else "reference-data")
     ensure_writable(folder)
     making.check_is_alone(folder, sources, parquet=parquet)
-    results = perform(plan_references([x.scene for x in sources]), keep, placement)
+    results = execution_options.perform(
+        plan_references([x.scene for x in sources]), keep, placement
+    )
     data = [making.data_of(x.scene, results) for x in sources]
     files = making.files_of(data, parquet=parquet)
     manifest = making.manifest_of(sources, files, making.command_of(scenes, parquet))
@@ -96,27 +91,19 @@ def make(
 
 @reference.command()
 @click.argument("folder", required=False, type=PATH, metavar="[DIR]")
-@click.option(
-    "--share",
-    default=_DEFAULT_SHARE,
-    metavar="X",
-    help="The part of the data that is recomputed, 0 … 1.",
-)
-@click.option("--all", "everything", is_flag=True, help="Recompute all of them.")
-@click.option(
+@option("--share", "X", "The part of the data that is recomputed, 0 … 1.", default=_DEFAULT_SHARE)
+@flag("--all everything", "Recompute all of them.")
+@option(
     "--most-steps",
-    type=click.IntRange(1),
-    metavar="N",
-    help="The limit on the steps of all recomputed runs; the others are named.  "
+    "N",
+    "The limit on the steps of all recomputed runs; the others are named.  "
     f"[default: {_DEFAULT_STEP_LIMIT:,}; none with --all]",
+    type=click.IntRange(1),
 )
-@click.option(
-    "--seed",
-    type=click.IntRange(0),
-    metavar="S",
-    help="The seed of the random sample; by default a random one.",
+@option(
+    "--seed", "S", "The seed of the random sample; by default a random one.", type=click.IntRange(0)
 )
-@with_placement
+@execution_options.with_placement
 @answering
 def check(
     folder: Path | None,
@@ -145,7 +132,7 @@ def check(
         most_steps = _DEFAULT_STEP_LIMIT
     seed = SystemRandom().randrange(10**6) if seed is None else seed
     # The bar counts thousandths, as only the check knows the total, and reports it with each count.
-    with counting_bar("recomputed", 1000, unit="") as advance:
+    with execution_options.counting_bar("recomputed", 1000, unit="") as advance:
         report = checking.check(
             folder or PUBLISHED,
             share=1.0 if everything else share,

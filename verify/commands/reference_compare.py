@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.arithmetic.exact import decimal, rational, short
 from verify.commands.shared.execution_options import progress_bar
 from verify.commands.shared.input import PATH, SCHEME
+from verify.commands.shared.option import option
 from verify.commands.shared.output import CommandAnswer, answering, pick
 from verify.errors import InputError
 
@@ -48,16 +50,19 @@ _LEAST_DIGITS = 0.5  # if fewer digits agree, the text says that none does
 
 @click.command()
 @click.argument("theirs", type=PATH, metavar="THEIRS.csv")
-@click.option("--data", type=PATH, metavar="DIR",
-              help="The reference data; without it, the committed set.")  # fmt: skip
-@click.option("--scene", metavar="NAME", help="The scene of all rows, such as duffing.")
-@click.option("--scheme", type=SCHEME, metavar="NAME", help="The scheme of all rows.")
-@click.option("--step-size", metavar="H", help="Their step size.")
-@click.option("--q", "q0", metavar="X", help="Their initial q.")
-@click.option("--p", "p0", metavar="X", help="Their initial p.")
-@click.option("--t0", metavar="T0", help="Their start time, if H depends on t.")
-@click.option("--column", "columns", multiple=True, metavar="OURS=THEIRS",
-              help="The table's name of a column, such as q=position; repeatable.")  # fmt: skip
+@option("--data", "DIR", "The reference data; without it, the committed set.", type=PATH)
+@option("--scene", "NAME", "The scene of all rows, such as duffing.")
+@option("--scheme", "NAME", "The scheme of all rows.", type=SCHEME)
+@option("--step-size", "H", "Their step size.")
+@option("--q q0", "X", "Their initial q.")
+@option("--p p0", "X", "Their initial p.")
+@option("--t0", "T0", "Their start time, if H depends on t.")
+@option(
+    "--column columns",
+    "OURS=THEIRS",
+    "The table's name of a column, such as q=position; repeatable.",
+    multiple=True,
+)
 @answering
 def compare(
     theirs: Path,
@@ -149,7 +154,6 @@ def _as_json(table: "SubmittedTable", comparison: "TableComparison") -> dict[str
 
 
 def _separation_json(x: "WorstSeparation") -> dict[str, Any]:
-    from verify.arithmetic.exact import decimal
 
     evaluations = {"plain": x.result.plain, "closed_form": x.result.closed_form}
     parts = {
@@ -163,7 +167,6 @@ def _separation_json(x: "WorstSeparation") -> dict[str, Any]:
 
 
 def _print(table: "SubmittedTable", comparison: "TableComparison") -> None:
-    from verify.arithmetic.exact import short
 
     rows, runs = _format_count(comparison.rows, "row"), _format_count(comparison.runs, "run")
     click.echo(f"{rows} of {runs} compared; {_format_count(table.rows, 'row')} read")
@@ -205,7 +208,6 @@ def _shorten_label(label: str) -> str:
 
 def _shorten_number(text: str) -> str:
     """Return a long decimal or quotient as a decimal, without the middle of its digits."""
-    from verify.arithmetic.exact import decimal, rational
 
     decimal_text = decimal(rational(text), _MAX_DIGITS)
     # `decimal` writes all digits, then e and a signed exponent.
@@ -253,7 +255,6 @@ def _print_few(lines: "Sequence[str]", ending: str) -> None:
 
 
 def _describe_separation(x: "WorstSeparation") -> str:
-    from verify.arithmetic.exact import decimal
 
     plain = x.result.plain
     assert plain is not None  # noqa: S101 - without it this is not called

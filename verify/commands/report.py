@@ -10,15 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.commands.shared import destinations
 from verify.commands.shared import output as show
-from verify.commands.shared.destinations import (
-    OUT_FOLDER,
-    check_ours,
-    ensure_keepable,
-    ensure_writable,
-)
 from verify.commands.shared.execution_options import kept_tasks, with_placement
 from verify.commands.shared.input import hamiltonian_of, load_target
+from verify.commands.shared.option import flag, option
 from verify.commands.shared.output import CommandAnswer, answering
 from verify.commands.shared.scene_options import (
     check_scene_alone,
@@ -42,13 +38,11 @@ _PAGE = "html"
 
 @click.command()
 @with_one_line(
-    click.option("--steps", type=int, metavar="N", help="At least 1; or:"),
-    click.option("--time", metavar="T", help="N is T/H rounded down."),
+    option("--steps", "N", "At least 1; or:", type=int),
+    option("--time", "T", "N is T/H rounded down."),
 )
 @start_options
-@click.option(
-    "-o", "--output", type=OUT_FOLDER, metavar="DIR", help="Write it.  [default: SCENE-report]"
-)
+@option("-o --output", "DIR", "Write it.  [default: SCENE-report]", type=destinations.OUT_FOLDER)
 @click.option(
     "--format",
     "formats",
@@ -58,22 +52,20 @@ _PAGE = "html"
     help="html, DIR/index.html, or md, DIR/report.md with DIR/figures, for a "
     "repository; repeatable.",
 )
-@click.option(
-    "--full", is_flag=True, help="Unfold all that the page folds, on paper too: many pages."
-)
-@click.option(
+@flag("--full", "Unfold all that the page folds, on paper too: many pages.")
+@option(
     "--findings",
-    type=OUT_FOLDER,
-    metavar="DIR",
-    help="Of integrators: a note for its maintainers on each mistake that matters, DIR/NAME.md.",
+    "DIR",
+    "Of integrators: a note for its maintainers on each mistake that matters, DIR/NAME.md.",
+    type=destinations.OUT_FOLDER,
 )
-@click.option(
+@option(
     "--errata",
-    type=OUT_FOLDER,
-    metavar="DIR",
-    help="Of a paper: an erratum to copy, DIR/errata.tex and .md, and a page for an editor.",
+    "DIR",
+    "Of a paper: an erratum to copy, DIR/errata.tex and .md, and a page for an editor.",
+    type=destinations.OUT_FOLDER,
 )
-@click.option("--force", is_flag=True, help="Also into a folder with files that are not ours.")
+@flag("--force", "Also into a folder with files that are not ours.")
 @with_placement
 @answering
 def report(
@@ -151,7 +143,7 @@ def _check_errata(folder: Path | None, claims: "ClaimsFile | None") -> None:
         return
     if claims is None or not any(claim.reading_of for claim in claims.claims):
         raise InputError("--errata", str(folder), "is of claims that are readings of statements")
-    ensure_writable(folder, "--errata")
+    destinations.ensure_writable(folder, "--errata")
 
 
 def _read_request(scene: str | None, options: Mapping[str, Any]) -> _Request:
@@ -199,7 +191,7 @@ def _verify_scene(
     claims, claim_scenes = (file.claims, file.scenes) if file else ([], {})
     folder = output or Path(f"{request.name}-report")
     _check_folder(folder, force)
-    ensure_keepable(folder, "--output")
+    destinations.ensure_keepable(folder, "--output")
     planned = plan_scenes(scenes)
     add_claims(planned, claims, {scene.name: scene for scene in scenes} | claim_scenes)
     with kept_tasks(planned.tasks, folder / "kept", "--output") as (store, on_result):
@@ -238,7 +230,7 @@ def _verify_integrators(
         raise InputError("--cluster", placement.cluster, "the integrators of others are run here")
     folder = output or Path(f"{scene}-report")
     _check_folder(folder, force)
-    ensure_writable(folder)
+    destinations.ensure_writable(folder)
     command = f"verify report {scene} -o {folder.name}{typed_options}"
     workers = placement.workers or min(_MOST, os.cpu_count() or 1)
     return folder, make_integrators_report(command, _show_progress, workers)
@@ -248,7 +240,7 @@ def _write_notes(result: "Report", folder: Path) -> list[Path]:
     """Write the notes, and return their paths; standard error says why one was not written."""
     from verify.audits.mistake_note import write_findings
 
-    ensure_writable(folder)
+    destinations.ensure_writable(folder)
     paths, unwritten = write_findings(result, folder, _show_progress)
     for name, reason in unwritten.items():
         click.echo(f"{name}.md is not written: {reason}", err=True)
@@ -257,7 +249,7 @@ def _write_notes(result: "Report", folder: Path) -> list[Path]:
 
 def _check_folder(folder: Path, force: bool) -> None:
     if not force:
-        check_ours(folder, advice=", or --force")
+        destinations.check_ours(folder, advice=", or --force")
 
 
 def _show_progress(name: str) -> None:

@@ -8,13 +8,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify import arithmetic as number_systems
+from verify.arithmetic.exact import positive, whole
+from verify.commands.shared import destinations
 from verify.commands.shared import output as show
-from verify.commands.shared.destinations import (
-    OUT_FILE,
-    OUT_FOLDER,
-    STANDARD_OUTPUT,
-    ensure_keepable,
-)
 from verify.commands.shared.execution_options import cache_option, counting_bar
 from verify.commands.shared.input import (
     parse_coordinates,
@@ -22,12 +18,9 @@ from verify.commands.shared.input import (
     values_of,
     with_kept_system,
 )
+from verify.commands.shared.option import option
 from verify.commands.shared.output import CommandAnswer, answering
-from verify.commands.shared.structure_options import (
-    compose_scheme,
-    split_option,
-    structure_options,
-)
+from verify.commands.shared.structure_options import compose_scheme, split_option, structure_options
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
@@ -44,44 +37,37 @@ if TYPE_CHECKING:
 @cache_option
 @structure_options
 @split_option
-@click.option("--step-size", required=True, metavar="H", help="The step size, greater than 0.")
-@click.option(
-    "--steps", type=int, metavar="N", help="The number of steps, at least 1; or give --time."
-)
-@click.option("--time", metavar="T", help="N is T/H rounded down.")
-@click.option(
-    "--t0", default="0", metavar="T0", help="The start time, if the Hamiltonian depends on t."
-)
-@click.option("--q", metavar="Q", help="Initial displacement; of q1, q2, … one each, as 0.1,0.2.")
-@click.option("--p", metavar="P", help="Initial momentum; as --q.")
-@click.option("--start", metavar="NAME=VALUE,…", help="Of --field: the initial values, as u=1,v=2.")
-@click.option(
-    "--digits", type=int, metavar="D", help="The number of significant digits that are requested."
-)
+@option("--step-size", "H", "The step size, greater than 0.", required=True)
+@option("--steps", "N", "The number of steps, at least 1; or give --time.", type=int)
+@option("--time", "T", "N is T/H rounded down.")
+@option("--t0", "T0", "The start time, if the Hamiltonian depends on t.", default="0")
+@option("--q", "Q", "Initial displacement; of q1, q2, … one each, as 0.1,0.2.")
+@option("--p", "P", "Initial momentum; as --q.")
+@option("--start", "NAME=VALUE,…", "Of --field: the initial values, as u=1,v=2.")
+@option("--digits", "D", "The number of significant digits that are requested.", type=int)
 @click.option(
     "--arithmetic",
     help=f"{', '.join(number_systems.names())}; or auto, the fastest that certifies the digits. "
     "By default float64, or auto if --digits is given.",
 )
-@click.option(
-    "--csv",
-    "table",
-    type=OUT_FILE,
-    metavar="FILE",
-    help="Write t, p, q, H − H₀, ΔJ and Λ of the states to this file; - is standard output, which "
+@option(
+    "--csv table",
+    "FILE",
+    "Write t, p, q, H − H₀, ΔJ and Λ of the states to this file; - is standard output, which "
     "then gets nothing else.",
+    type=destinations.OUT_FILE,
 )
-@click.option(
+@option(
     "--points",
+    "N",
+    "The largest number of states in the file after the initial one.  [default: 10000]",
     type=int,
-    metavar="N",
-    help="The largest number of states in the file after the initial one.  [default: 10000]",
 )
-@click.option(
+@option(
     "--keep",
-    type=OUT_FOLDER,
-    metavar="DIR",
-    help="Keep checkpoints in this folder; the same command continues from them.",
+    "DIR",
+    "Keep checkpoints in this folder; the same command continues from them.",
+    type=destinations.OUT_FOLDER,
 )
 def run(
     hamiltonian: "Hamiltonian",
@@ -103,12 +89,11 @@ def run(
     verify run --system pendulum --scheme lie2 --step-size 0.01 --time 20 --q 1 --p 0 \\
            --csv orbit.csv
     """
-    from verify.arithmetic.exact import whole
     from verify.scenes.measured_structures import measured_structures
     from verify.scenes.results.run import MOST_POINTS
 
     csv_path, points = options.pop("table"), options.pop("points")
-    if csv_path == STANDARD_OUTPUT and click.get_current_context().params["as_json"]:
+    if csv_path == destinations.STANDARD_OUTPUT and click.get_current_context().params["as_json"]:
         raise InputError("--csv", "-", "does not go with --json: both are for standard output")
     if points is not None and csv_path is None:
         raise InputError("--points", points, "goes with --csv")
@@ -132,7 +117,7 @@ def run(
 
     return CommandAnswer(
         lambda: show.run_json(result, measured),
-        show_status if csv_path == STANDARD_OUTPUT else show_run,
+        show_status if csv_path == destinations.STANDARD_OUTPUT else show_run,
         failed=result.status != "finished",
     )
 
@@ -154,7 +139,6 @@ def _run_scheme(
     t0: str,
 ) -> "tuple[RunResult, str]":
     """Return the run, and a note if --time is no multiple of the step size; else an empty text."""
-    from verify.arithmetic.exact import positive
     from verify.execution.keeper import Keeper, name_of
     from verify.hamiltonians.run_domain import check_point, start_of
     from verify.runs.requested_run import run as run_scheme
@@ -175,7 +159,7 @@ def _run_scheme(
     arithmetic = arithmetic or (AUTO if digits else "float64")
     count = steps_from(steps, time, step_size)
     if keep is not None:
-        ensure_keepable(keep)
+        destinations.ensure_keepable(keep)
     # It names the checkpoints: a command with any other argument must not continue from them.
     run_identity = (
         hamiltonian.formula,
@@ -188,10 +172,8 @@ def _run_scheme(
         arithmetic,
         measured,
     )
-    keeper, has_all_reported = (
-        Keeper(keep, name_of(run_identity)),
-        all(carries(hamiltonian, n) for n in REPORTED),
-    )
+    keeper = Keeper(keep, name_of(run_identity))
+    has_all_reported = all(carries(hamiltonian, n) for n in REPORTED)
     # In float64 the plain evaluation of Λ shows the effect of rounding, so it is reported too; at
     # many digits the effect cannot be seen.
     is_plain = arithmetic == "float64" and has_all_reported
@@ -226,7 +208,7 @@ def _write_orbit(result: "RunResult", path: Path, points: int) -> None:
 
     with counting_bar("stepping again, for the states", result.steps) as advance:
         table = orbit_of(result, points, advance)
-    if path == STANDARD_OUTPUT:
+    if path == destinations.STANDARD_OUTPUT:
         click.echo(_format_csv(table), nl=False)
     else:
         write_atomically(path, _format_csv(table))

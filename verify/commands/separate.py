@@ -24,18 +24,13 @@ from verify.commands.shared.input import (
     start_options,
     with_kept_hamiltonian,
 )
-from verify.commands.shared.output import (
-    CommandAnswer,
-    answering,
-    pick,
-    plain_json,
-    print_once,
-)
+from verify.commands.shared.option import option
+from verify.commands.shared.output import CommandAnswer, answering, pick, plain_json, print_once
 from verify.commands.shared.separated_integrals import (
     change_json,
     integrals_of,
     print_change,
-    split_change,
+    split_changes,
 )
 from verify.commands.shared.structure_options import structure_options
 
@@ -172,26 +167,19 @@ def _describe_crossover(crossover: "CrossoverResult") -> str:
 @scheme_option
 @answering
 @cache_option
-@click.option(
-    "--step-size",
-    "step_sizes",
+@option(
+    "--step-size step_sizes",
+    "H",
+    "The step size, greater than 0; repeatable, for a grid of step sizes.",
     required=True,
     multiple=True,
-    metavar="H",
-    help="The step size, greater than 0; repeatable, for a grid of step sizes.",
 )
-@click.option(
-    "--steps", type=int, metavar="N", help="The number of steps, at least 1; or give --time."
-)
-@click.option("--time", metavar="T", help="For each step size H, N is T/H rounded down.")
-@click.option(
-    "--t0", default="0", metavar="T0", help="The start time, if the Hamiltonian depends on t."
-)
+@option("--steps", "N", "The number of steps, at least 1; or give --time.", type=int)
+@option("--time", "T", "For each step size H, N is T/H rounded down.")
+@option("--t0", "T0", "The start time, if the Hamiltonian depends on t.", default="0")
 @start_options
 @structure_options
-@click.option(
-    "--digits", type=int, default=17, metavar="D", help="Significant digits of every part."
-)
+@option("--digits", "D", "Significant digits of every part.", type=int, default=17)
 @click.option(
     "--arithmetic",
     default="auto",
@@ -233,12 +221,7 @@ def separate(
     with progress_bar("stepping", RUNS * sum(n for _, n in step_counts)) as advance:
         options |= {"step_sizes": step_sizes, "progress": advance}
         grid = separate_grid(hamiltonian, scheme, **options)
-    start = {name: options[name] for name in ("q", "p", "t0", "digits", "arithmetic")}
-    changes = [
-        (structure, split_change(hamiltonian, scheme, structure, *count, **start))
-        for count in step_counts
-        for structure in integrals
-    ]
+    changes = split_changes(hamiltonian, scheme, integrals, step_counts, options)
     time = options["time"]
     note = describe_rounding(time and positive(time, "time"), [h for h, _ in step_counts])
 

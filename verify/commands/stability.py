@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.arithmetic.exact import plain, positive, rational, text
 from verify.commands.shared.execution_options import perform, with_tasks
 from verify.commands.shared.input import hamiltonian_of, parse_coordinates
+from verify.commands.shared.option import flag, option
 from verify.commands.shared.output import CommandAnswer, print_once
 from verify.commands.shared.scene_options import scenes_of, start_options, with_one_line
 from verify.errors import NOT_GIVEN, InputError
@@ -79,7 +81,6 @@ def _print_oscillator(theory: "LinearStability", delta_j: str) -> None:
 
 
 def _answer_at_equilibrium(scheme: str, options: Mapping[str, Any]) -> CommandAnswer:
-    from verify.arithmetic.exact import positive
     from verify.hamiltonians.run_domain import point_of
     from verify.studies.stability.equilibrium import linear_at_equilibrium
 
@@ -92,7 +93,6 @@ def _answer_at_equilibrium(scheme: str, options: Mapping[str, Any]) -> CommandAn
 
 
 def _equilibrium_json(theory: "LinearAtEquilibrium") -> dict[str, Any]:
-    from verify.arithmetic.exact import text
     from verify.hamiltonians.run_domain import coordinate_texts
 
     hamiltonian, interval = theory.hamiltonian, theory.interval
@@ -118,7 +118,6 @@ def _equilibrium_json(theory: "LinearAtEquilibrium") -> dict[str, Any]:
 
 
 def _print_equilibrium(theory: "LinearAtEquilibrium") -> None:
-    from verify.arithmetic.exact import plain, rational, text
 
     point_text = (
         ", ".join(f"{name} = {text(x)}" for name, x in theory.point.items() if x) or "the origin"
@@ -164,16 +163,13 @@ _LINE_WIDTH, _INDENT = 100, " " * 6
 
 @click.command()
 @with_one_line(
-    click.option(
-        "--steps", type=int, metavar="N", help="The number of steps, at least 1; or give --time."
-    ),
-    click.option("--time", metavar="T", help="N is T/H rounded down."),
+    option("--steps", "N", "The number of steps, at least 1; or give --time.", type=int),
+    option("--time", "T", "N is T/H rounded down."),
 )
 @start_options
-@click.option(
+@flag(
     "--linear",
-    is_flag=True,
-    help="Judge one scheme on the harmonic oscillator, or at an equilibrium of H, by algebra.",
+    "Judge one scheme on the harmonic oscillator, or at an equilibrium of H, by algebra.",
 )
 @with_tasks
 def stability(

@@ -21,18 +21,20 @@ class Task(Frozen):
 
     `alone`: True if it measures run times, so that nothing else may run beside it; the part that
     may is in `prepare`. `result`: the model of the result of `compute`. `imports`: the modules that
-    `compute` or `prepare` imports, which workers import before their first call.
+    `compute` or `prepare` imports, which workers import before their first call. `price`: the cost
+    of every task of a kind, if they cost about the same.
     """
 
     alone: ClassVar[bool] = False
     imports: ClassVar[tuple[str, ...]] = ()
+    price: ClassVar[int] = 1
     result: ClassVar[type[Frozen]]
     kind: str
 
     @property
     def cost(self) -> int:
         """The approximate cost of the task in float64 steps."""
-        return 1
+        return self.price
 
     @property
     def ensemble(self) -> str | None:

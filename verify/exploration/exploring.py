@@ -77,14 +77,7 @@ class Exploration:
         size = max(_MIN_SCENES_OF_TASK, -(-self.examples // _MAX_TASKS))
         for first in range(0, self.examples, size):
             count = min(size, self.examples - first)
-            task = ExploreTask(
-                drawn=self.drawn,
-                seed=self.seed,
-                properties=self.properties,
-                claims=self.claims,
-                first=first,
-                count=count,
-            )
+            task = ExploreTask.from_object(self, first=first, count=count)
             plan.need(task, "a stretch of drawn scenes")
         return plan
 
@@ -94,12 +87,9 @@ class Exploration:
         for failure in failures:
             # A failure has the name of its property alone, by which the claim is found.
             claims = tuple(c for c in self.claims if claim_property(c).name == failure.property)
-            task = ShrinkTask(
-                drawn=self.drawn,
-                seed=self.seed,
-                properties=() if claims else (failure.property,),
-                claims=claims,
-                example=failure.example,
+            properties = () if claims else (failure.property,)
+            task = ShrinkTask.from_object(
+                self, properties=properties, claims=claims, example=failure.example
             )
             plan.need(task, "it failed")
         return plan
@@ -133,13 +123,11 @@ def explore(
             first.setdefault(failure.property, failure)
     shrinking = exploration.shrinking(list(first.values()))
     shrunk = execute(shrinking, store, where=where)
-    return ExploreReport(
-        seed=exploration.seed,
-        examples=exploration.examples,
+    return ExploreReport.from_object(
+        exploration,
         properties=tuple(
-            PropertySummary(
-                name=each.name,
-                sentence=each.sentence,
+            PropertySummary.from_object(
+                each,
                 looked_at=sum(r.looked_at[each.name] for r in explore_results),
                 failures=sum(r.failed[each.name] for r in explore_results),
             )

@@ -16,18 +16,7 @@ from verify.errors import InputError, unknown_name
 from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import LOCAL_DEFAULT, Placement
 from verify.execution.plan import Plan
-from verify.exploration.island_search import (
-    COEFFICIENTS,
-    MOST_EXAMPLES,
-    REACH,
-    SCENES_IN_RESULT,
-    STEP_SIZES,
-    hunted_scenes,
-    scene_of,
-    select_by_shape,
-    select_different,
-    sorting_key,
-)
+from verify.exploration import island_search
 from verify.exploration.measures import MEASURES, orbit
 from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace, check_scenes
@@ -67,25 +56,19 @@ class Hunt:
             names = ", ".join(name for name, x in MEASURES.items() if x.several)
             problem = f"is of one degree of freedom; allowed in more: {names}"
             raise InputError("maximise", self.measure, problem)
-        check_scenes(self.seed, self.examples, MOST_EXAMPLES)
+        check_scenes(self.seed, self.examples, island_search.MOST_EXAMPLES)
         if not 2 <= self.steps <= _MAX_STEPS:
             raise InputError("steps", self.steps, f"must be 2 … {_MAX_STEPS}")
         # This raises the errors of a space from which nothing can be drawn, before any plan.
-        hunted_scenes(self.drawn, self.steps)
+        island_search.hunted_scenes(self.drawn, self.steps)
 
     @cached_property
     def plan(self) -> Plan:
         """The tasks, each for an island of at most 200 scenes."""
         plan = Plan()
         for island, first in enumerate(range(0, self.examples, _SCENES_OF_ISLAND)):
-            task = HuntTask(
-                drawn=self.drawn,
-                seed=self.seed,
-                measure=self.measure,
-                island=island,
-                count=min(_SCENES_OF_ISLAND, self.examples - first),
-                steps=self.steps,
-            )
+            count = min(_SCENES_OF_ISLAND, self.examples - first)
+            task = HuntTask.from_object(self, island=island, count=count)
             plan.need(task, f"an island of the hunt for {self.measure}")
         return plan
 
@@ -102,10 +85,16 @@ def hunt(
     results = execute(plan, store, where=where, done=done)
     islands = [r for r in map(results.get, plan.tasks) if isinstance(r, HuntResult)]
     # Islands may find the same scene: the best of each shape is taken over all of them.
-    together = sorted((worst for island in islands for worst in island.worst), key=sorting_key)
+    together = sorted(
+        (worst for island in islands for worst in island.worst), key=island_search.sorting_key
+    )
     examples = sum(island.examples for island in islands)
     return HuntResult(
-        worst=tuple(select_different(select_by_shape(together))[:SCENES_IN_RESULT]),
+        worst=tuple(
+            island_search.select_different(island_search.select_by_shape(together))[
+                : island_search.SCENES_IN_RESULT
+            ]
+        ),
         examples=examples,
     )
 
@@ -139,15 +128,13 @@ def gallery(
     # A longer run that leaves the range is replaced by one as long as the hunt's.
     unfinished = [w for w, run in zip(hunted.worst, runs, strict=True) if run.status != "finished"]
     short = iter(separate_all(unfinished, request.steps))
-    return Gallery(
-        measure=request.measure,
+    return Gallery.from_object(
+        request,
         sentence=MEASURES[request.measure].sentence,
-        seed=request.seed,
         examples=hunted.examples,
-        steps=request.steps,
-        reach=text(REACH),
-        step_sizes=(text(STEP_SIZES[0]), text(STEP_SIZES[1])),
-        coefficients=(str(COEFFICIENTS[0]), str(COEFFICIENTS[1])),
+        reach=text(island_search.REACH),
+        step_sizes=(text(island_search.STEP_SIZES[0]), text(island_search.STEP_SIZES[1])),
+        coefficients=(str(island_search.COEFFICIENTS[0]), str(island_search.COEFFICIENTS[1])),
         scenes=tuple(
             _gallery_scene(worst, run if run.status == "finished" else next(short), run)
             for worst, run in zip(hunted.worst, runs, strict=True)
@@ -156,7 +143,7 @@ def gallery(
 
 
 def _task(worst: Worst, steps: int) -> SeparationTask:
-    sample = Sample.from_scene(scene_of(worst))
+    sample = Sample.from_scene(island_search.scene_of(worst))
     return SeparationTask(
         **sample.scene.hamiltonian_fields(),
         scheme=sample.scheme.name,
@@ -166,7 +153,7 @@ def _task(worst: Worst, steps: int) -> SeparationTask:
 
 
 def _gallery_scene(worst: Worst, run: SeparationResult, longer: SeparationResult) -> GalleryScene:
-    points = orbit(Sample.from_scene(scene_of(worst)))
+    points = orbit(Sample.from_scene(island_search.scene_of(worst)))
     lost = find_meaningless_span(run.plain.series if run.plain else ())
     return GalleryScene(
         value=worst.value,
@@ -181,7 +168,7 @@ def _gallery_scene(worst: Worst, run: SeparationResult, longer: SeparationResult
 
 def _text_with_separation(worst: Worst) -> str:
     """Return the text of the scene, with the request to separate Λ, as in the gallery."""
-    scene = scene_of(worst)
+    scene = island_search.scene_of(worst)
     assert scene.grid is not None  # noqa: S101 - as drawn
     grid = scene.grid.model_copy(update={"separate": True})
     return scene_text(scene.model_copy(update={"grid": grid}))

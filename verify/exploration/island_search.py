@@ -116,12 +116,10 @@ def neighbours(
     within `coefficients`; without this last limit a search would only make H ever larger.
     """
     sample = Sample.from_scene(scene)
-    formula, place, h, n = (
-        scene.hamiltonian or "",
-        sample.place,
-        sample.step_size,
-        len(sample.place),
-    )
+    formula = scene.hamiltonian or ""
+    place = sample.place
+    h = sample.step_size
+    n = len(sample.place)
 
     order = (*range(n // 2, n), *range(n // 2))  # q, then p
     moved_places = [

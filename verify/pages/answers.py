@@ -173,7 +173,7 @@ def _answer_tables(claims: Sequence[ClaimView]) -> Iterator[RefereeQuestion]:
     """Yield how much of each printed table is refuted, as the beginning of its evidence has it."""
     by_share: dict[str, list[ClaimView]] = {}
     for claim in claims:
-        if claim.is_table and claim.result.standing != "ours" and not claim.is_later_reading:
+        if claim.is_table_of_paper:
             # The evidence of a table begins with the share that is refuted, up to a colon.
             share = str(claim.result.evidence).partition(":")[0]
             refuted = claim.result.verdict is Verdict.REFUTED

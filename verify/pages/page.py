@@ -20,16 +20,8 @@ from verify.hamiltonians.coordinates import coordinates_of
 from verify.pages.figures.captioned_plot import Plot
 from verify.pages.first_screen import FirstScreen, first_screen
 from verify.pages.sections import page as of_page
+from verify.pages.sections import page_contents
 from verify.pages.sections import scene as of_scene
-from verify.pages.sections.page_contents import (
-    Anchors,
-    ClaimGroup,
-    ClaimView,
-    PageContents,
-    SceneView,
-    groups,
-    plot_printed_table,
-)
 from verify.pages.sections.section import SectionPlace, VisibleSection, select_sections, terms, walk
 from verify.pages.text import legend, mathml, prose_markup, typography
 from verify.pages.text.legend import SIGNS
@@ -39,14 +31,14 @@ from verify.scenes.results.report import Report, SceneResult
 
 
 @dataclass(frozen=True)
-class PageView(PageContents):
+class PageView(page_contents.PageContents):
     """The page's view: the first screen, the sections after it, and the terms that they need."""
 
     first: FirstScreen
     sections: tuple[VisibleSection, ...]
     terms: Mapping[str, Markup]
 
-    def groups_on(self, scene_anchor: str) -> list[ClaimGroup]:
+    def groups_on(self, scene_anchor: str) -> list[page_contents.ClaimGroup]:
         """Return the groups of claims that have a claim on this scene."""
         return [g for g in self.groups if any(c.scene_anchor == scene_anchor for c in g.claims)]
 
@@ -67,28 +59,30 @@ def page_view(report: Report) -> PageView:
         **vars(contents),
         first=first_screen(report, contents.claims, sections),
         sections=sections,
-        terms=legend.ALWAYS | terms(sections),
+        terms=legend.terms_of("page") | terms(sections),
     )
 
 
 # -- claims and scenes with their places -----------------------------------------------------------
 
 
-def _contents_of(report: Report) -> PageContents:
+def _contents_of(report: Report) -> page_contents.PageContents:
     """Return the report's claims and scenes with their places, which all sections share."""
-    anchors = Anchors()
+    anchors = page_contents.Anchors()
     scene_anchors = [anchors.take("system", scene.name) for scene in report.scenes]
     claims = _build_claim_views(report, scene_anchors, anchors)
     scenes = tuple(
         _build_scene_view(scene, anchor)
         for scene, anchor in zip(report.scenes, scene_anchors, strict=True)
     )
-    return PageContents(report, anchors, claims, tuple(groups(claims, anchors)), scenes)
+    return page_contents.PageContents(
+        report, anchors, claims, tuple(page_contents.groups(claims, anchors)), scenes
+    )
 
 
 def _build_claim_views(
-    report: Report, scene_anchors: Sequence[str], anchors: Anchors
-) -> tuple[ClaimView, ...]:
+    report: Report, scene_anchors: Sequence[str], anchors: page_contents.Anchors
+) -> tuple[page_contents.ClaimView, ...]:
     scenes = {
         s.name: (anchor, s.title) for s, anchor in zip(report.scenes, scene_anchors, strict=True)
     }
@@ -97,18 +91,20 @@ def _build_claim_views(
         for statement_result in report.statements
         for reading in statement_result.readings
     }
-    views: list[ClaimView] = []
+    views: list[page_contents.ClaimView] = []
     for result in _most_favourable_first(report.claims):
         anchor, statement = anchors.take("claim", result.id), statements.get(result.id)
         is_later_reading = (
             statement is not None and bool(views) and views[-1].statement is statement
         )
         scene = scenes.get(result.scene, ("", ""))
-        claim = ClaimView(
+        claim = page_contents.ClaimView(
             result, anchor, *scene, statement=statement, is_later_reading=is_later_reading
         )
         if claim.is_table:
-            claim = replace(claim, plot=plot_printed_table(claim, name=f"table-of-{anchor}"))
+            claim = replace(
+                claim, plot=page_contents.plot_printed_table(claim, name=f"table-of-{anchor}")
+            )
         views.append(claim)
     return tuple(views)
 
@@ -127,13 +123,13 @@ def _most_favourable_first(claims: Sequence[ClaimResult]) -> list[ClaimResult]:
     return [claims[rank[-1]] for rank in sorted(ranks)]
 
 
-def _build_scene_view(scene: SceneResult, anchor: str) -> SceneView:
+def _build_scene_view(scene: SceneResult, anchor: str) -> page_contents.SceneView:
     names = mathml.free_names(scene.hamiltonian)
     decided_names = {*coordinates_of(names), *scene.parameters, "t"}
     for name in names:  # u_dot on the left of an equation without an H
         if name.endswith("_dot"):
             decided_names |= {name, name.removesuffix("_dot")}
-    return SceneView(
+    return page_contents.SceneView(
         result=scene,
         anchor=anchor,
         symbols=tuple(n for n in names if n not in decided_names),

@@ -4,12 +4,33 @@ A check is one exact fact: polynomials that vanish, equal formulas, or numbers t
 step is marked with what checked it in full: exact algebra or enclosures of this run, which are rows
 of the argument's table, or theorems of the shipped theory for Rocq. A step that is only tried on
 examples, or stands on paper alone, counts as not checked by machine.
+
+The words of a module's arguments stand in the Markdown file beside it, each below the name of its
+function, and their steps name the checks that the function computes (`ArgumentTexts`):
+
+    ## eq_0
+
+    The verdict's evidence, in the syntax of `read_prose`, with formulas quoted, and {value}.
+
+    The setting and notation, if there is any to say.
+
+    - A step in so many words. [first_check, Theorems.a_theorem; tried examples]
+    - A step that a reader has to follow.
+    - [steps_of_another_text]
+
+    A remark after the proof, if there is one.
+
+A name with a point is a theorem of the shipped theory for Rocq; the others are arguments of the
+call: a check, several, or the steps that stand there; and texts, which take the places of their
+names in braces, as another text of the file does.
 """
 
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property
 from itertools import groupby
+from pathlib import Path
 from typing import Any
 
 import sympy
@@ -25,6 +46,12 @@ from verify.verdict import Verdict
 ALGEBRA = "exact algebra"
 NUMBERS = "exact numbers"
 BALLS = "enclosures"
+_PARAGRAPH_END = re.compile(r"\n\s*\n")
+_ITEM = re.compile(r"^\s*- ", re.MULTILINE)
+_HEADING = re.compile(r"^## (\w+)$", re.MULTILINE)
+_LIST = r"[\w.]+(?:, [\w.]+)*"
+_MARKS = re.compile(rf"(.*?) ?(?:\[({_LIST})?(?:;? ?tried ({_LIST}))?\])?")  # at a step's end
+_NAME = re.compile(r"[\w.]+")
 
 
 @dataclass(frozen=True)
@@ -60,6 +87,9 @@ def same(
     return Check(statement, not wrong, f"`{to_text(wrong[0])}`" if wrong else value)
 
 
+Checks = Check | Iterable["Check | ShippedTheorem | Step"]
+
+
 # -- arguments ------------------------------------------------------------------------------------
 
 
@@ -76,9 +106,30 @@ class Step:
     tried: tuple[Check, ...] = ()
 
 
-def step(text: str, *by: Check | ShippedTheorem, tried: Sequence[Check] = ()) -> Step:
-    """Build the step with this text, in the syntax of `read_prose`, and its checks."""
-    return Step(text, by, tuple(tried))
+def steps(text: str, **checks: Checks) -> list[Step]:
+    """Read the steps of a list, and the checks that they name; ValueError if one is not named."""
+    result: list[Step] = []
+    names: set[str] = set()
+    for item in _ITEM.split(text.strip())[1:]:
+        words, by, tried = _MARKS.fullmatch(" ".join(item.split())).groups()  # type: ignore[union-attr]
+        names |= set(_NAME.findall(f"{by or ''}, {tried or ''}"))
+        values, examples = _checks(by, checks), _checks(tried, checks)
+        if words:
+            result.append(Step(words, tuple(values), tuple(examples)))
+        else:
+            result += values
+    if unnamed := checks.keys() - names:
+        raise ValueError(f"no step names {', '.join(sorted(unnamed))}")
+    return result
+
+
+def _checks(names: str | None, checks: Mapping[str, Checks]) -> list[Any]:
+    """Return the checks, theorems or steps of these names, in their order."""
+    values: list[Any] = []
+    for name in _NAME.findall(names or ""):
+        value = ShippedTheorem(*name.split(".")) if "." in name else checks[name]
+        values += [value] if isinstance(value, (Check, ShippedTheorem)) else value
+    return values
 
 
 class Argument(WithProse):
@@ -110,12 +161,7 @@ HEAD = ("what the argument rests on", "value", "checked")
 
 
 def _argument(
-    verdict: Verdict,
-    evidence: str,
-    steps: Iterable[Step],
-    *,
-    setting: str = "",
-    remark: str = "",
+    verdict: Verdict, evidence: str, steps: Iterable[Step], *, setting: str = "", remark: str = ""
 ) -> Argument:
     """Build the argument if every check holds; otherwise it shows nothing, and is UNDECIDED.
 
@@ -136,7 +182,7 @@ def _argument(
         )
     return Argument(
         verdict=verdict,
-        evidence=read_prose(evidence),
+        evidence=_read(evidence),
         given=_read(setting),
         steps=tuple(_result(argument_step, checks) for argument_step in steps),
         remark=_read(remark),
@@ -145,8 +191,49 @@ def _argument(
     )
 
 
-proof = partial(_argument, Verdict.PROVED)
-refutation = partial(_argument, Verdict.REFUTED)
+def _read_argument(verdict: Verdict, text: str, /, **checks: Checks) -> Argument:
+    """Build the argument of a text as the head of this file shows it."""
+    evidence, *others = _PARAGRAPH_END.split(text.strip())
+    at = next(k for k, paragraph in enumerate(others) if _ITEM.match(paragraph))
+    setting, remark = " ".join(others[:at]), " ".join(others[at + 1 :])
+    return _argument(verdict, evidence, steps(others[at], **checks), setting=setting, remark=remark)
+
+
+class ArgumentTexts:
+    """The words of a module's arguments, in the Markdown file beside the module."""
+
+    def __init__(self, module_file: str) -> None:
+        self._path = Path(module_file).with_suffix(".md")
+
+    def proof(self, name: str, /, **checks: Checks | str) -> Argument:
+        """Return the argument below this heading, with the verdict PROVED if all checks hold."""
+        text, other_checks = self._fill(name, checks)
+        return _read_argument(Verdict.PROVED, text, **other_checks)
+
+    def refutation(self, name: str, /, **checks: Checks | str) -> Argument:
+        """Return the argument below this heading, with the verdict REFUTED if all checks hold."""
+        text, other_checks = self._fill(name, checks)
+        return _read_argument(Verdict.REFUTED, text, **other_checks)
+
+    def steps(self, name: str, /, **checks: Checks | str) -> list[Step]:
+        """Return the steps below this heading, for an argument that several have in common."""
+        text, other_checks = self._fill(name, checks)
+        return steps(text, **other_checks)
+
+    @cached_property
+    def _texts(self) -> dict[str, str]:
+        parts = _HEADING.split(self._path.read_text(encoding="utf-8"))[1:]
+        return {name: text.strip() for name, text in zip(parts[::2], parts[1::2], strict=True)}
+
+    def _fill(self, name: str, checks: Mapping[str, Checks | str]) -> tuple[str, dict[str, Checks]]:
+        """Return the text, with other texts in the places of their names, and the checks."""
+        text = self._texts[name]
+        values = {key: value for key, value in checks.items() if isinstance(value, str)}
+        if unnamed := [key for key in values if f"{{{key}}}" not in text]:
+            raise ValueError(f"{name} has no place for {', '.join(unnamed)}")
+        for key, value in (self._texts | values).items():
+            text = text.replace(f"{{{key}}}", value)
+        return text, {key: x for key, x in checks.items() if not isinstance(x, str)}
 
 
 def checks_of(steps: Iterable[Step]) -> list[Check]:

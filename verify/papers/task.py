@@ -6,21 +6,15 @@ from verify.execution.keeper import Keeper
 from verify.execution.task import Task
 from verify.papers.argument import Argument
 
-_COST = 20_000_000  # of an argument, about
-
 
 class TheoremTask(Task):
     """The argument for the theorem of that `name`."""
 
     result = Argument
     imports = ("verify.papers",)
+    price = 20_000_000
     kind: Literal["theorem"] = "theorem"
     name: str
-
-    @property
-    def cost(self) -> int:
-        """The estimated cost in float64 steps."""
-        return _COST
 
     def compute(self, keeper: Keeper) -> Argument:
         """Compute the argument, with its verdict."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from functools import cache
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any, Self, get_args
 
 from pydantic import (
     BaseModel,
@@ -42,6 +42,15 @@ class Frozen(BaseModel):
     """A frozen model that refuses unknown keys."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
+
+    @classmethod
+    def from_object(cls, source: object, **other_fields: Any) -> Self:
+        """Return the model with these fields, and the others from the attributes of `source`.
+
+        A field that is neither has its default.
+        """
+        names = [n for n in cls.model_fields if n not in other_fields and hasattr(source, n)]
+        return cls(**{name: getattr(source, name) for name in names}, **other_fields)
 
 
 class Section(Frozen):

@@ -13,16 +13,7 @@ from functools import lru_cache
 
 from verify.algebra.enclosure import enclose_over
 from verify.algebra.expressions.formula_text import to_text
-from verify.arithmetic.arb import (
-    UNKNOWN,
-    Ball,
-    ball,
-    is_representable,
-    make_ball,
-    midpoint_and_radius,
-    precision,
-    rational_ball,
-)
+from verify.arithmetic import arb
 from verify.arithmetic.exact import Number, rational, text, whole
 from verify.flows.closed_orbit import Start
 from verify.flows.extrapolation import NoFlowError
@@ -105,7 +96,7 @@ def predict_runs(
     results = []
     for run in complete_runs:
         end = number(Fraction(run.values["p"].value)), number(Fraction(run.values["q"].value))
-        with precision():
+        with arb.precision():
             results.append(_predict(law, average_result.average, run, Fraction(oscillation(end))))
     return tuple(prediction for prediction in results if prediction)
 
@@ -119,16 +110,16 @@ def _place_orbit(hamiltonian: Hamiltonian, scheme: str, start: Start) -> Average
 def _predict(
     law: GrowthLaw, mean: Value, run: RunResult, oscillation: Fraction
 ) -> PredictionResult | None:
-    h, measured_lambda = rational_ball(Fraction(run.step_size)), ball(run.values["lambda"])
-    secular = h ** (law.power + 1) * run.steps * ball(mean)
+    h, measured_lambda = arb.rational_ball(Fraction(run.step_size)), arb.ball(run.values["lambda"])
+    secular = h ** (law.power + 1) * run.steps * arb.ball(mean)
     # S is h^r times the bounded part along the orbit, and h^(r+1) N ⟨g⟩, the secular one.
-    boundary = h**law.power * make_ball(oscillation, abs(oscillation) * _ROUNDED)
+    boundary = h**law.power * arb.make_ball(oscillation, abs(oscillation) * _ROUNDED)
     if law.potential and law.leading:
         boundary += h ** (law.power - 1) * _difference_along(law.potential, run)
         boundary -= h**law.power * _difference_along(law.leading, run) / 2
     # Λ = e^S − 1.
     prediction = (boundary + secular).expm1()
-    if not is_representable(prediction):
+    if not arb.is_representable(prediction):
         return None
     relative_difference = (prediction - measured_lambda) / abs(measured_lambda)
     return PredictionResult(
@@ -138,24 +129,26 @@ def _predict(
         secular=_value(secular),
         predicted=_value(prediction),
         measured=run.values["lambda"],
-        difference=_value(relative_difference) if is_representable(relative_difference) else None,
+        difference=_value(relative_difference)
+        if arb.is_representable(relative_difference)
+        else None,
     )
 
 
-def _difference_along(f: Element, run: RunResult) -> Ball:
+def _difference_along(f: Element, run: RunResult) -> arb.Ball:
     """Return [f] = f(z_N) − f(z₀), not finite where f may be undefined."""
     ring, x = f
     q, p = map(Fraction, run.plane_start)
     ends = (
-        {name: ball(run.values[name]) for name in ("p", "q")},
-        {"p": rational_ball(p), "q": rational_ball(q)},
+        {name: arb.ball(run.values[name]) for name in ("p", "q")},
+        {"p": arb.rational_ball(p), "q": arb.rational_ball(q)},
     )
     last, first = (enclose_over(ring, x, end) for end in ends)
-    return UNKNOWN if last is None or first is None else last - first
+    return arb.UNKNOWN if last is None or first is None else last - first
 
 
-def _value(x: Ball) -> Value:
-    return Value.from_bound(*midpoint_and_radius(x), _SHOWN)
+def _value(x: arb.Ball) -> Value:
+    return Value.from_bound(*arb.midpoint_and_radius(x), _SHOWN)
 
 
 def _format_element(x: Element) -> str:

@@ -21,12 +21,7 @@ from verify.flows.compiled_functions import energies_at
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun, RunOutcome
 from verify.runs.digits_on_demand import choose
-from verify.scenes.results.orbit_points import (
-    MapSections,
-    PoincareOrbit,
-    SchemeSections,
-    StroboscopicOrbit,
-)
+from verify.scenes.results import orbit_points
 from verify.scenes.results.regions import EXACT_FLOW
 from verify.studies.surface_passes import (
     Passes,
@@ -57,7 +52,7 @@ def sections_at_periods(
     steps: int,
     periods: int,
     digits: int,
-) -> SchemeSections:
+) -> orbit_points.SchemeSections:
     """Return the states after 0, 1, … periods of so many steps, from each start.
 
     A start has p, q, h, and t if H depends on it.
@@ -81,7 +76,7 @@ def sections_at_periods(
         )
         float_passes = _follow_by_periods(run, float64.NAME, _FLOAT_DIGITS, steps)
         orbits.append(_build_stroboscopic_orbit(passes, finer_passes, float_passes))
-    return SchemeSections(
+    return orbit_points.SchemeSections(
         scheme=scheme,
         orbits=tuple(orbits),
         arithmetic=name,
@@ -108,10 +103,10 @@ def _last_system() -> str:
 
 def _build_stroboscopic_orbit(
     passes: Passes, finer_passes: Passes, float_passes: Passes
-) -> StroboscopicOrbit:
+) -> orbit_points.StroboscopicOrbit:
     size = 1 + max(abs(z[name]) for z in passes.states for name in ("p", "q"))
     start = passes.states[0]
-    return StroboscopicOrbit(
+    return orbit_points.StroboscopicOrbit(
         q=text(start["q"]),
         p=text(start["p"]),
         points=tuple(
@@ -138,7 +133,9 @@ class SectionRequest:
     digits: int
 
 
-def sections_at_surface(request: SectionRequest, name: str, starts: Sequence[Start]) -> MapSections:
+def sections_at_surface(
+    request: SectionRequest, name: str, starts: Sequence[Start]
+) -> orbit_points.MapSections:
     """Return the passes of orbits by the scheme of this name, or by EXACT_FLOW, from each start.
 
     A start has p1 … qn by their names.
@@ -149,7 +146,7 @@ def sections_at_surface(request: SectionRequest, name: str, starts: Sequence[Sta
         if by_exact_flow
         else [_follow_scheme(request, name, z) for z in starts]
     )
-    return MapSections(
+    return orbit_points.MapSections(
         map=name,
         orbits=tuple(
             _build_poincare_orbit(request, z, *passes)
@@ -185,11 +182,11 @@ def _follow_scheme(request: SectionRequest, name: str, start: Start) -> tuple[Pa
 
 def _build_poincare_orbit(
     request: SectionRequest, start: Start, passes: Passes, second_passes: Passes
-) -> PoincareOrbit:
+) -> orbit_points.PoincareOrbit:
     # Points count as one where they agree to a part of the picture's extent.
     size = 1 + max((abs(z[n]) for z in passes.states for n in request.draw), default=Fraction(0))
     agreeing, error = count_agreeing(passes.states, second_passes.states, _POINT_TOLERANCE * size)
-    return PoincareOrbit(
+    return orbit_points.PoincareOrbit(
         q=tuple(text(x) for name, x in start.items() if name[0] == "q"),
         p=tuple(text(x) for name, x in start.items() if name[0] == "p"),
         energy=_energy(request.hamiltonian, start),

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from verify.audits.methods.driver import HENON_HEILES, TWO_WAVES, Driver, drive_problems
+from verify.audits.methods.driver import FIELD, HENON_HEILES, TWO_WAVES, Driver, drive_problems
 from verify.audits.methods.integrator import ReleasedIntegrator, table_integrator
 
 TITLE = "desolver"
@@ -21,11 +21,8 @@ _STEP = Driver(
 import numpy as np
 from desolver.integrators import {method}
 """,
-    """\
-def field(t, y):
-    q, p = np.split(y, 2)
-    return np.concatenate([p, force(t, q)])
-y = np.hstack([q, p])
+    FIELD
+    + """\
 method = {method}(y.shape, y.dtype)
 _, (_, change) = method(field, np.float64(t), y, {}, np.float64(h))
 q, p = np.split(y + change, 2)

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
-from verify.audits.methods.driver import DRIVEN, HENON_HEILES, Driver, drive_problems
+from verify.audits.methods.driver import DRIVEN, FIELD, HENON_HEILES, Driver, drive_problems
 from verify.audits.methods.integrator import ReleasedIntegrator, full, table_integrator
 
 TITLE = "extensisq"
@@ -23,11 +23,8 @@ _STEP = Driver(
 import numpy as np
 from extensisq import {method}
 """,
-    """\
-def field(t, y):
-    q, p = np.split(y, 2)
-    return np.concatenate([p, force(t, q)])
-y = np.hstack([q, p])
+    FIELD
+    + """\
 solver = {method}(field, t, y, t + 2 * h, first_step=h, max_step=2 * h, rtol=1e6, atol=1e6,
                   nfev_stiff_detect=0)
 solver.step()

@@ -6,13 +6,7 @@ map of both it is symplectic, and its order is not that of its positions.
 
 from collections.abc import Iterator
 
-from verify.audits.methods.driver import (
-    HENON_HEILES,
-    TWO_WAVES,
-    Driver,
-    ScriptedProblem,
-    drive_problems,
-)
+from verify.audits.methods import driver
 from verify.audits.methods.integrator import ReleasedIntegrator
 
 TITLE = "OpenMM"
@@ -23,9 +17,9 @@ LEFT_OUT = (
     ("VariableVerletIntegrator", "chooses its steps by itself; it is said not to be symplectic"),
     ("Langevin and Nosé–Hoover integrators", "are of other equations than H's"),
 )
-_POTENTIALS: dict[ScriptedProblem, str] = {
-    TWO_WAVES: "-2*cos(x)-sin(2*x)/2",
-    HENON_HEILES: "(x^2+y^2)/2+x^2*y-y^3/3",
+_POTENTIALS: dict[driver.ScriptedProblem, str] = {
+    driver.TWO_WAVES: "-2*cos(x)-sin(2*x)/2",
+    driver.HENON_HEILES: "(x^2+y^2)/2+x^2*y-y^3/3",
 }
 _HEAD = """\
 import numpy as np
@@ -61,8 +55,10 @@ _METHODS = (
 def integrators() -> Iterator[ReleasedIntegrator]:
     for name, method, order, claim in _METHODS:
         for problem, potential in _POTENTIALS.items():
-            driven = Driver(
+            driven = driver.Driver(
                 _HEAD.replace("{potential}", potential), _BODY, "one step on the reference platform"
             )
             symplectic = True if name == "VerletIntegrator" else None
-            yield from drive_problems(name, driven, method, claim, order, symplectic, (problem,))
+            yield from driver.drive_problems(
+                name, driven, method, claim, order, symplectic, (problem,)
+            )

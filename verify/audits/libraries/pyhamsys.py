@@ -8,13 +8,7 @@ orders ask for. All others are for either.
 import itertools
 from collections.abc import Iterator
 
-from verify.audits.methods.driver import (
-    HENON_HEILES,
-    PROBLEMS,
-    TWO_WAVES,
-    Driver,
-    drive_problems,
-)
+from verify.audits.methods import driver
 from verify.audits.methods.integrator import ReleasedIntegrator, table_integrator, text
 
 TITLE = "pyhamsys"
@@ -59,24 +53,24 @@ _OF_KICKS = {"PEFRL": 4, "RKN6a": 6}
 _OF_DRIFTS = {"VEFRL": 4, "RKN4b": 4, "RKN6b": 6}
 
 
-def _driven(first: str, second: str) -> Driver:
+def _driven(first: str, second: str) -> driver.Driver:
     body = _BODY.replace("{first}", first).replace("{second}", second)
     description = f"one step of the integrator, chi a {first} and then a {second}"
-    return Driver(_HEAD, body, description)
+    return driver.Driver(_HEAD, body, description)
 
 
 def integrators() -> Iterator[ReleasedIntegrator]:
     for orders, first, second, problems in (
-        (_EITHER, "drift", "kick", PROBLEMS),
-        (_OF_KICKS, "drift", "kick", (TWO_WAVES, HENON_HEILES)),
-        (_OF_DRIFTS, "kick", "drift", (TWO_WAVES, HENON_HEILES)),
+        (_EITHER, "drift", "kick", driver.PROBLEMS),
+        (_OF_KICKS, "drift", "kick", (driver.TWO_WAVES, driver.HENON_HEILES)),
+        (_OF_DRIFTS, "kick", "drift", (driver.TWO_WAVES, driver.HENON_HEILES)),
     ):
         driven = _driven(first, second)
         for method, order in orders.items():
             source = f"its README, “{method} (order {order}…”; autonomous and non-autonomous"
             yield _table(method, order, source, first)
             selected_problems = problems if order < _HIGH_ORDER else problems[1:2]
-            yield from drive_problems(
+            yield from driver.drive_problems(
                 f"{method}, as a step", driven, method, source, order, True, selected_problems
             )
 

@@ -183,10 +183,8 @@ def _integrator(
         points, ladder = (_ONE_POINT if problem.softening else _FAR_POINTS[:1]), FINE
     elif order == 6 and problem is _FREE:
         points, ladder = _FAR_POINTS[3:], tuple(h for h in FINE if h < Fraction(7, 8))
-    text, driven = (
-        _script(problem, integrator, settings),
-        f"one step of dt = h: {problem.description}",
-    )
+    text = _script(problem, integrator, settings)
+    driven = f"one step of dt = h: {problem.description}"
     return integrator_from_script(
         name, driven, _SOURCE, problem.hamiltonian, text, order, True, points, ladder
     )

@@ -11,12 +11,7 @@ from typing import Any
 
 import sympy
 
-from verify.audits.methods.driver import (
-    HENON_HEILES,
-    Driver,
-    drive_problems,
-    integrator_from_script,
-)
+from verify.audits.methods import driver
 from verify.audits.methods.integrator import (
     FINE,
     ExactTableau,
@@ -46,16 +41,13 @@ _POINTS: tuple[Point, ...] = ((Fraction(1, 2), Fraction(-3, 2)),)
 # For Radau h⁷ hides h⁶ at most points, but not here.
 _POINT_OF_RADAU: tuple[Point, ...] = ((Fraction(1, 7), Fraction(6, 5)),)
 _SOURCE = "the documentation of scipy.integrate.{}"
-_IN_SPACE = Driver(
+_IN_SPACE = driver.Driver(
     """\
 import numpy as np
 from scipy.integrate import {method}
 """,
-    """\
-def field(t, y):
-    q, p = np.split(y, 2)
-    return np.concatenate([p, force(t, q)])
-y = np.hstack([q, p])
+    driver.FIELD
+    + """\
 s = {method}(field, t, y, t + 2 * h, first_step=h, max_step=2 * h, rtol=1e6, atol=1e6)
 s.step()
 assert abs(s.t - t - h) < 1e-12
@@ -97,13 +89,15 @@ def integrators() -> Iterator[ReleasedIntegrator]:
         for name, order in (("RK23", 3), ("RK45", 5)):
             source, text = f"{_SOURCE.format(name)}{more}", lines.replace("{method}", name)
             samples = (_POINTS, FINE) if order > 4 else ()
-            yield integrator_from_script(
+            yield driver.integrator_from_script(
                 f"{name}, as a step{tag}", _LOOSE.format(name), source, formula, text, order, None,
                 *samples,
             )  # fmt: skip
     for name, order in (("RK23", 3), ("RK45", 5)):
         source_text, title = _SOURCE.format(name), f"{name}, as a step"
-        yield from drive_problems(title, _IN_SPACE, name, source_text, order, None, (HENON_HEILES,))
+        yield from driver.drive_problems(
+            title, _IN_SPACE, name, source_text, order, None, (driver.HENON_HEILES,)
+        )
     source_text = _SOURCE.format("Radau")
     driven = "the collocation equations of scipy's Radau, by its own solver, to rounding"
     autonomous = FloatStep(_PENDULUM, lambda: _without_time(_radau(_field)))

@@ -54,6 +54,15 @@ class ScriptedProblem:
         return "p, q, t, h" if self.depends_on_time else "p, q, h"
 
 
+# Lines of a step: the field of z' = f(t, z) for z = (q, p), and z itself.
+FIELD = """\
+def field(t, y):
+    q, p = np.split(y, 2)
+    return np.concatenate([p, force(t, q)])
+y = np.hstack([q, p])
+"""
+
+
 def _force(line: str) -> str:
     return f"def force(t, q):\n    return {line}\n"
 

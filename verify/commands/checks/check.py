@@ -9,6 +9,7 @@ import click
 from verify.commands.checks.check_options import allow_undecided_option, is_failure, print_tally
 from verify.commands.shared.execution_options import kept_tasks, with_tasks
 from verify.commands.shared.input import CLAIMS, paper_folder
+from verify.commands.shared.option import option
 from verify.commands.shared.output import CommandAnswer, pick
 
 if TYPE_CHECKING:
@@ -22,9 +23,7 @@ _STATEMENT_KEYS = ("id", "source", "statement", "outcome", "readings")
 
 @click.command()
 @click.argument("claims", type=CLAIMS, metavar="CLAIMS")
-@click.option(
-    "--only", multiple=True, metavar="ID", help="Only this claim, or eq-* for several; repeatable."
-)
+@option("--only", "ID", "Only this claim, or eq-* for several; repeatable.", multiple=True)
 @allow_undecided_option
 @with_tasks
 def check(

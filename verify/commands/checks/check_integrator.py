@@ -1,27 +1,14 @@
 """The command `verify check-integrator`: a user's own step(p, q, h)."""
 
-import time
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.checks.check_options import (
-    allow_undecided_option,
-    example_json,
-    is_failure,
-    keeps_json,
-    place_options,
-    places_json,
-    point_option,
-    print_keeps,
-    print_measured,
-    print_notes,
-    request_from,
-    step_size_option,
-)
+from verify.commands.checks import check_options
 from verify.commands.shared import proof_output as show
 from verify.commands.shared.execution_options import clock
 from verify.commands.shared.input import hamiltonian_of, system_options, time_limit_option
+from verify.commands.shared.option import flag, option
 from verify.commands.shared.output import CommandAnswer, answering, cut, pick
 from verify.commands.shared.structure_options import structure_options
 from verify.errors import NOT_GIVEN, InputError
@@ -38,37 +25,36 @@ _ORDER_RANGE = click.IntRange(1, 12)
 
 @click.command("check-integrator")
 @click.argument("target", required=False, metavar="[MODULE:FUNCTION | LIB.so:SYMBOL]")
-@click.option(
+@option(
     "--command",
-    metavar="PROGRAM",
-    help="A program that answers each line `t h p1 … pn q1 … qn` with a line `p1 … pn q1 … qn`.",
+    "PROGRAM",
+    "A program that answers each line `t h p1 … pn q1 … qn` with a line `p1 … pn q1 … qn`.",
 )
-@click.option(
-    "--type",
-    "number_type",
+@option(
+    "--type number_type",
+    "TYPE",
+    "The type of the numbers of a library or program: double, long-double, float128, "
+    "double-double.",
     default="double",
     show_default=True,
-    metavar="TYPE",
-    help="The type of the numbers of a library or program: double, long-double, float128, "
-    "double-double.",
 )
 @system_options
-@click.option(
+@option(
     "--arguments",
-    metavar="ORDER",
-    help="The order of a Python function's arguments, such as q,p,h or q,p,t,h; it returns p' and "
+    "ORDER",
+    "The order of a Python function's arguments, such as q,p,h or q,p,t,h; it returns p' and "
     "q' in that order too. By default the names of its arguments decide.",
 )
-@place_options
-@point_option
-@step_size_option
-@click.option("--order", type=_ORDER_RANGE, metavar="K", help="Claimed order of convergence.")
-@click.option("--area-preserving", is_flag=True, help="Claimed: det J ≡ 1.")
-@click.option("--symplectic", is_flag=True, help="Claimed: JᵀΩJ ≡ Ω; in the plane det J ≡ 1.")
-@click.option("--area-order", type=_ORDER_RANGE, metavar="K", help="Claimed: ΔJ = O(h^K).")
+@check_options.place_options
+@check_options.point_option
+@check_options.step_size_option
+@option("--order", "K", "Claimed order of convergence.", type=_ORDER_RANGE)
+@flag("--area-preserving", "Claimed: det J ≡ 1.")
+@flag("--symplectic", "Claimed: JᵀΩJ ≡ Ω; in the plane det J ≡ 1.")
+@option("--area-order", "K", "Claimed: ΔJ = O(h^K).", type=_ORDER_RANGE)
 @structure_options
 @time_limit_option
-@allow_undecided_option
+@check_options.allow_undecided_option
 @answering
 def check_integrator(
     target: str | None,
@@ -123,9 +109,8 @@ def check_integrator(
     from verify.integrators.system_check import check_system
     from verify.structures.reading import read_structures
 
-    start_time = time.perf_counter()
     parsed = hamiltonian_of(system, hamiltonian, params, field)
-    request = request_from(parsed.coordinates, **place_texts)
+    request = check_options.request_from(parsed.coordinates, **place_texts)
     if parsed.symbols:
         raise InputError("--param", parsed.symbols[0], "has no value; a step of one's own needs it")
     target_name = command or target or ""
@@ -134,12 +119,12 @@ def check_integrator(
     structures = read_structures(keeps, parsed)
     with clock(target_name):
         finding = check_system(callee, parsed, claims, structures, request)
-    seconds = f"{time.perf_counter() - start_time:.6f}"
     return CommandAnswer(
-        lambda: _json(parsed, target_name, finding, seconds),
+        lambda: _json(parsed, target_name, finding),
         lambda: _print(parsed, target_name, finding, with_keeps=bool(structures)),
+        timed=True,
         # Without a claim there is nothing to leave undecided: only a refutation fails.
-        failed=is_failure(
+        failed=check_options.is_failure(
             [finding.verdict],
             allow_undecided=allow_undecided or (claims == Claims() and not structures),
         ),
@@ -191,9 +176,7 @@ def _build_callee(
     )  # fmt: skip
 
 
-def _json(
-    hamiltonian: "Hamiltonian", target: str, finding: "Finding", seconds: str
-) -> dict[str, Any]:
+def _json(hamiltonian: "Hamiltonian", target: str, finding: "Finding") -> dict[str, Any]:
     from verify.arithmetic.exact import text
     from verify.integrators.results import potential_of_finding
 
@@ -222,11 +205,10 @@ def _json(
         "delta_j_max": None if finding.largest is None else f"{finding.largest:.6e}",
         "probe_error": None if finding.probe_error is None else f"{finding.probe_error:.1e}",
         "step_size": None if against is None else text(against.h),
-        "counterexample": example and example_json(example),
-        "places": places_json(hamiltonian.coordinates, finding.places),
-        "keeps": keeps_json(finding),
+        "counterexample": example and check_options.example_json(example),
+        "places": check_options.places_json(hamiltonian.coordinates, finding.places),
+        "keeps": check_options.keeps_json(finding),
         **pick(finding, "domain", "faults", "notes"),
-        "seconds": seconds,
     }  # fmt: skip
 
 
@@ -252,7 +234,7 @@ def _print(
         show.print_head(hamiltonian, target, finding)
         if finding.leading is not None and finding.order is not None and degrees == 1:
             click.echo(f"  ΔJ       ({cut(finding.leading)})·h^{finding.order} + …")
-        print_measured(finding)
+        check_options.print_measured(finding)
     if with_keeps:
-        print_keeps(finding)
-    print_notes(finding)
+        check_options.print_keeps(finding)
+    check_options.print_notes(finding)

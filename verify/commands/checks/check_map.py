@@ -1,24 +1,13 @@
 """The command `verify check-map`: any map of one's own, without an H."""
 
-import time
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.checks.check_options import (
-    allow_undecided_option,
-    is_failure,
-    keeps_json,
-    place_options,
-    places_json,
-    point_option,
-    print_keeps,
-    print_measured,
-    print_notes,
-    request_from,
-)
+from verify.commands.checks import check_options
 from verify.commands.shared.execution_options import clock
 from verify.commands.shared.input import time_limit_option, values_of
+from verify.commands.shared.option import option
 from verify.commands.shared.output import CommandAnswer, answering, pick
 from verify.commands.shared.proof_output import point_json
 from verify.commands.shared.structure_options import structure_options
@@ -31,38 +20,32 @@ if TYPE_CHECKING:
 
 @click.command("check-map")
 @click.argument("target", metavar="MODULE:FUNCTION")
-@click.option(
-    "--degrees",
-    type=int,
-    default=1,
-    show_default=True,
-    metavar="N",
-    help="The number of degrees of freedom.",
+@option(
+    "--degrees", "N", "The number of degrees of freedom.", type=int, default=1, show_default=True
 )
-@click.option(
+@option(
     "--arguments",
-    metavar="ORDER",
-    help="The order of the coordinates in the argument of a map(z), such as q1,p1,q2,p2. "
+    "ORDER",
+    "The order of the coordinates in the argument of a map(z), such as q1,p1,q2,p2. "
     "By default p1, …, pn, q1, …, qn.",
 )
-@click.option(
-    "--param",
-    "params",
+@option(
+    "--param params",
+    "NAME=VALUE",
+    "A further argument that it takes by name; repeatable.",
     multiple=True,
-    metavar="NAME=VALUE",
-    help="A further argument that it takes by name; repeatable.",
 )
-@click.option(
+@option(
     "--coordinates",
-    metavar="NAMES",
-    help="The names of its arguments, flattened, in their order, such as v1,v2,x1,x2; any number. "
+    "NAMES",
+    "The names of its arguments, flattened, in their order, such as v1,v2,x1,x2; any number. "
     "By default p1, …, pn, q1, …, qn.",
 )
-@place_options
-@point_option
+@check_options.place_options
+@check_options.point_option
 @structure_options
 @time_limit_option
-@allow_undecided_option
+@check_options.allow_undecided_option
 @answering
 def check_map(
     target: str,
@@ -104,12 +87,11 @@ def check_map(
     from verify.integrators.user_code.coordinate_layout import callee_of_coordinates
     from verify.integrators.user_code.loading import callee_from, load
 
-    start_time = time.perf_counter()
     check_degrees(degrees)
     names = coordinates_in(degrees)
     if coordinates is not None:
         names = coordinates_from(coordinates, "--coordinates")
-    request = request_from(names, **place_texts)
+    request = check_options.request_from(names, **place_texts)
     parameters = {n: rational(x, f"parameter {n}") for n, x in values_of(params).items()}
     function = load(target, "map")
     if coordinates is None:
@@ -130,15 +112,15 @@ def check_map(
             finding = check_map_keeps(callee, claims, request)
         else:
             finding = check(callee, request)
-    seconds = f"{time.perf_counter() - start_time:.6f}"
     return CommandAnswer(
-        lambda: _json(target, names, finding, seconds),
+        lambda: _json(target, names, finding),
         lambda: _print(target, finding, with_keeps=with_keeps),
-        failed=is_failure([finding.verdict], allow_undecided=allow_undecided),
+        timed=True,
+        failed=check_options.is_failure([finding.verdict], allow_undecided=allow_undecided),
     )
 
 
-def _json(target: str, names: tuple[str, ...], finding: "Finding", seconds: str) -> dict[str, Any]:
+def _json(target: str, names: tuple[str, ...], finding: "Finding") -> dict[str, Any]:
     example = finding.counterexample
     return {
         **pick(finding, "verdict", "reason"),
@@ -151,10 +133,9 @@ def _json(target: str, names: tuple[str, ...], finding: "Finding", seconds: str)
         },
         "defect_max": None if finding.largest is None else f"{finding.largest:.6e}",
         "probe_error": None if finding.probe_error is None else f"{finding.probe_error:.1e}",
-        "places": places_json(names, finding.places),
-        "keeps": keeps_json(finding),
+        "places": check_options.places_json(names, finding.places),
+        "keeps": check_options.keeps_json(finding),
         **pick(finding, "domain", "faults", "notes"),
-        "seconds": seconds,
     }  # fmt: skip
 
 
@@ -164,7 +145,7 @@ def _print(target: str, finding: "Finding", *, with_keeps: bool) -> None:
     if finding.how == "proof" and finding.area_preserving is not None:
         click.echo(f"  det J    is {'' if finding.area_preserving else 'not '}1")
     else:
-        print_measured(finding)
+        check_options.print_measured(finding)
     if with_keeps:
-        print_keeps(finding)
-    print_notes(finding)
+        check_options.print_keeps(finding)
+    check_options.print_notes(finding)

@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared.input import options
+from verify.arithmetic.exact import positive, rational, text
+from verify.commands.shared.option import flag, option, options
 from verify.commands.shared.output import pick, print_line
 from verify.commands.shared.proof_output import point_json
+from verify.commands.shared.structure_output import print_structures, structure_json
 from verify.errors import InputError
 from verify.prose import count
 
@@ -23,9 +25,7 @@ if TYPE_CHECKING:
     from verify.integrators.results import Counterexample, Finding
 
 
-allow_undecided_option = click.option(
-    "--allow-undecided", is_flag=True, help="Exit status 0 even if a claim is UNDECIDED."
-)
+allow_undecided_option = flag("--allow-undecided", "Exit status 0 even if a claim is UNDECIDED.")
 
 
 def is_failure(verdicts: Iterable[str], *, allow_undecided: bool) -> bool:
@@ -47,28 +47,24 @@ def print_tally(verdicts: Iterable[str]) -> None:
 # -- the places at which a user's code is evaluated ------------------------------------------------
 
 place_options = options(
-    click.option(
-        "--q", "q", metavar="Q", help="The displacements of the first state to try: q, or q1,q2,…"
-    ),
-    click.option("--p", "p", metavar="P", help="Its momenta: p, or p1,p2,…"),
-    click.option(
+    option("--q q", "Q", "The displacements of the first state to try: q, or q1,q2,…"),
+    option("--p p", "P", "Its momenta: p, or p1,p2,…"),
+    option(
         "--scale",
-        metavar="NAME=SIZE,…",
-        help="Sizes of the coordinates, such as q=7000,p=7.5; by default those of H or the map.",
+        "NAME=SIZE,…",
+        "Sizes of the coordinates, such as q=7000,p=7.5; by default those of H or the map.",
     ),
-    click.option(
+    option(
         "--within",
-        metavar="SIZE",
-        help="A defect that you allow, such as 1e-8; by default that of the numbers' rounding.",
+        "SIZE",
+        "A defect that you allow, such as 1e-8; by default that of the numbers' rounding.",
     ),
 )
-point_option = click.option(
-    "--point",
-    metavar="Z",
-    help="The first state to try, one number for each coordinate, in their order.",
+point_option = option(
+    "--point", "Z", "The first state to try, one number for each coordinate, in their order."
 )
-step_size_option = click.option(
-    "--step-size", metavar="H", help="The step size that matters to you, the largest that is tried."
+step_size_option = option(
+    "--step-size", "H", "The step size that matters to you, the largest that is tried."
 )
 
 
@@ -83,7 +79,6 @@ def request_from(
     point: str | None = None,
 ) -> "Request":
     """Return the request that these options describe. Raises InputError."""
-    from verify.arithmetic.exact import positive
     from verify.hamiltonians.coordinates import coordinates_in
     from verify.integrators.measures.survey import Request
 
@@ -103,26 +98,24 @@ def state_from(names: Sequence[str], q: str | None, p: str | None) -> tuple[Frac
 
     None if neither is given. Raises InputError.
     """
-    from verify.arithmetic.exact import rational
 
     if p is None and q is None:
         return None
     if p is None or q is None:
         raise InputError("--p, --q", p or q or "", "give both or none")
     degrees, z = len(names) // 2, list[Fraction]()
-    for name, text in (("--p", p), ("--q", q)):
-        numbers = [rational(part.strip(), name) for part in text.split(",")]
+    for name, typed in (("--p", p), ("--q", q)):
+        numbers = [rational(part.strip(), name) for part in typed.split(",")]
         if len(numbers) != degrees:
             problem = (
                 f"has {len(numbers)} numbers; allowed: {degrees}, one for each degree of freedom"
             )
-            raise InputError(name, text, problem)
+            raise InputError(name, typed, problem)
         z += numbers
     return tuple(z)
 
 
 def _parse_point(names: Sequence[str], other: str | None, text: str) -> tuple[Fraction, ...]:
-    from verify.arithmetic.exact import rational
 
     z = tuple(rational(part.strip(), "--point") for part in text.split(","))
     if other is not None or len(z) != len(names):
@@ -132,7 +125,6 @@ def _parse_point(names: Sequence[str], other: str | None, text: str) -> tuple[Fr
 
 
 def _parse_scale(names: Sequence[str], text: str) -> dict[str, Fraction]:
-    from verify.arithmetic.exact import positive
 
     sizes: dict[str, Fraction] = {}
     for part in text.split(","):
@@ -150,7 +142,6 @@ def _parse_scale(names: Sequence[str], text: str) -> dict[str, Fraction]:
 
 def places_json(coordinates: Sequence[str], places: "Sequence[TrialPlace]") -> list[dict[str, str]]:
     """Return the places at which the code was evaluated, each coordinate by its name."""
-    from verify.arithmetic.exact import text
 
     return [
         {
@@ -165,7 +156,6 @@ def places_json(coordinates: Sequence[str], places: "Sequence[TrialPlace]") -> l
 
 def keeps_json(finding: "Finding") -> list[dict[str, Any]]:
     """Return the keys of each structure of the finding, those of a proof among them."""
-    from verify.commands.shared.structure_output import structure_json
 
     return [
         {
@@ -184,7 +174,6 @@ def keeps_json(finding: "Finding") -> list[dict[str, Any]]:
 
 def example_json(example: "Counterexample") -> dict[str, Any]:
     """Return the keys of a counterexample: its place, and what is seen there."""
-    from verify.arithmetic.exact import text
 
     return {
         **point_json(example.z),
@@ -196,7 +185,6 @@ def example_json(example: "Counterexample") -> dict[str, Any]:
 
 def print_keeps(finding: "Finding") -> None:
     """Print each structure of the finding, with what is lost on the way back."""
-    from verify.commands.shared.structure_output import print_structures
 
     for kept in finding.keeps:
         print_structures([kept])

@@ -1,6 +1,5 @@
 """The command `verify check-table`: coefficients as papers and libraries print them."""
 
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -46,12 +45,11 @@ def check_table(tables: Path, allow_undecided: bool) -> CommandAnswer:
     """
     from verify.integrators.tables.table_file import check_table as check
 
-    start_time = time.perf_counter()
     judgements = check(tables)
-    seconds = f"{time.perf_counter() - start_time:.6f}"
     return CommandAnswer(
-        lambda: {"claims": [_json(judgement) for judgement in judgements], "seconds": seconds},
+        lambda: {"claims": list(map(_json, judgements))},
         lambda: _print(judgements),
+        timed=True,
         failed=is_failure(
             (judgement.claim.verdict for judgement in judgements), allow_undecided=allow_undecided
         ),

@@ -9,6 +9,7 @@ from typing import Any
 
 from verify.commands.shared.input import NonemptyPath
 from verify.errors import InputError
+from verify.files import check_replaceable, clear_abandoned
 
 STANDARD_OUTPUT = Path("-")
 _KEPT_FOLDER = "kept"  # the name of the folder of finished results, within that of a report
@@ -23,7 +24,6 @@ class _OutFile(NonemptyPath):
     """
 
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
-        from verify.files import check_replaceable
 
         path, option = super().convert(value, param, ctx), param.opts[-1]
         if path != STANDARD_OUTPUT:
@@ -106,7 +106,6 @@ def ensure_keepable(folder: Path, option: str = "--keep") -> None:
     shipped files, so that a result kept there would change the names of all results.
     """
     from verify.content import is_shipped
-    from verify.files import clear_abandoned
 
     if is_shipped(folder):
         problem = "lies in what verify ships; allowed: any other folder"

@@ -18,6 +18,7 @@ import click
 
 from verify.code_cache import OFF, VARIABLE, folder
 from verify.commands.shared.destinations import OUT_FOLDER, ensure_keepable
+from verify.commands.shared.option import flag, option
 from verify.commands.shared.output import answering
 
 if TYPE_CHECKING:
@@ -42,29 +43,26 @@ def _disable_cache(context: click.Context, _: click.Parameter, is_set: bool) -> 
     context.call_on_close(lambda: os.environ.update({VARIABLE: previous_setting}))
 
 
-cache_option = click.option(
+cache_option = flag(
     "--no-cache",
-    is_flag=True,
+    "Read H and compile every kernel anew, and keep nothing.",
     expose_value=False,
     callback=_disable_cache,
-    help="Read H and compile every kernel anew, and keep nothing.",
 )
-keep_option = click.option(
+keep_option = option(
     "--keep",
+    "DIR",
+    "Keep finished results in this folder; the same command continues from them.",
     type=OUT_FOLDER,
-    metavar="DIR",
-    help="Keep finished results in this folder; the same command continues from them.",
 )
-workers_option = click.option(
+workers_option = option(
     "--workers",
+    "N",
+    "The number of processes; by default as many as the work is worth.",
     type=click.IntRange(1, 256),
-    metavar="N",
-    help="The number of processes; by default as many as the work is worth.",
 )
-cluster_option = click.option(
-    "--cluster",
-    metavar="ADDRESS",
-    help="Run on the Dask cluster with this scheduler, tcp://HOST:PORT.",
+cluster_option = option(
+    "--cluster", "ADDRESS", "Run on the Dask cluster with this scheduler, tcp://HOST:PORT."
 )
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.commands.shared.option import flag, option, options
 from verify.content import content
 from verify.errors import NOT_GIVEN, InputError, plain_name, unknown_name
 
@@ -99,81 +100,52 @@ CLAIMS = _FileOr(lambda: ("paper",))
 FILE = _FileOr(tuple)
 SCHEME = _SchemeName("scheme", _schemes)
 _SYSTEM = CatalogueName("system", _systems)
-Command = Callable[..., Any]
-
-
-def options(*decorators: Callable[[Command], Command]) -> Callable[[Command], Command]:
-    """Return a decorator that adds these options, which the help lists in this order."""
-    # Decorators are applied from the last to the first, and click lists the last applied first.
-
-    def with_options(command: Command) -> Command:
-        for option in reversed(decorators):
-            command = option(command)
-        return command
-
-    return with_options
 
 
 # The options that name a Hamiltonian, arguments of `hamiltonian_of`.
 hamiltonian_options = options(
-    click.option(
+    option(
         "--system",
+        "NAME",
+        "A named system, such as duffing; `verify systems` lists them.",
         type=_SYSTEM,
-        metavar="NAME",
-        help="A named system, such as duffing; `verify systems` lists them.",
     ),
-    click.option("--hamiltonian", metavar="TEXT", help="H(p, q), such as 'p**2/2 - cos(q)'."),
-    click.option(
-        "--param",
-        "params",
-        multiple=True,
-        metavar="NAME=VALUE",
-        help="A parameter's exact value; repeatable.",
-    ),
+    option("--hamiltonian", "TEXT", "H(p, q), such as 'p**2/2 - cos(q)'."),
+    option("--param params", "NAME=VALUE", "A parameter's exact value; repeatable.", multiple=True),
 )
 # The same, or equations without an H.
 system_options = options(
     hamiltonian_options,
-    click.option(
-        "--field",
-        metavar="TEXT",
-        help="Equations without an H, such as 'u_dot = u*(v - 2); v_dot = v*(1 - u)'.",
+    option(
+        "--field", "TEXT", "Equations without an H, such as 'u_dot = u*(v - 2); v_dot = v*(1 - u)'."
     ),
 )
-scheme_option = click.option(
+scheme_option = option(
     "--scheme",
-    type=SCHEME,
-    metavar="NAME",
-    required=True,
-    help="lie1, lie2, …, stormer-verlet, rk4, gauss4, …: `verify schemes` lists them; or"
+    "NAME",
+    "lie1, lie2, …, stormer-verlet, rk4, gauss4, …: `verify schemes` lists them; or"
     " 'p_next = …; q_next = …'.",
+    type=SCHEME,
+    required=True,
 )
 
 every_options = options(
-    click.option(
+    flag(
         "--every-hamiltonian",
-        is_flag=True,
-        help="For every smooth H, its derivatives as free variables, instead of one.",
+        "For every smooth H, its derivatives as free variables, instead of one.",
     ),
-    click.option(
-        "--separable", is_flag=True, help="With --every-hamiltonian: for every H = T(p) + V(q)."
-    ),
+    flag("--separable", "With --every-hamiltonian: for every H = T(p) + V(q)."),
 )
 start_options = options(
-    click.option(
-        "--q",
-        required=True,
-        metavar="Q",
-        help="Initial displacement; of q1, q2, … one each, as 0.1,0.2.",
-    ),
-    click.option("--p", required=True, metavar="P", help="Initial momentum; as --q."),
+    option("--q", "Q", "Initial displacement; of q1, q2, … one each, as 0.1,0.2.", required=True),
+    option("--p", "P", "Initial momentum; as --q.", required=True),
 )
-time_limit_option = click.option(
+time_limit_option = option(
     "--time-limit",
+    "SECONDS",
+    "For all calls of the function.",
     type=click.FloatRange(0.01),
     default=60.0,
-    metavar="SECONDS",
-    help="For all calls of the function.",
 )
 
 
@@ -271,9 +243,9 @@ def one_or_every(
             problem = "goes without --system, --hamiltonian, --param"
             raise InputError("every_hamiltonian", NOT_GIVEN, problem)
         return None
-    for option, value in options_of_every.items():
+    for name, value in options_of_every.items():
         if value:
-            raise InputError(option, NOT_GIVEN, "goes with --every-hamiltonian")
+            raise InputError(name, NOT_GIVEN, "goes with --every-hamiltonian")
     return hamiltonian_of(**named_options)
 
 

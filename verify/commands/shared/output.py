@@ -6,6 +6,7 @@ An answer sets the exit status too.
 import json
 import sys
 import textwrap
+import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import wraps
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify import observables
+from verify.commands.shared.option import flag
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -29,12 +31,14 @@ FAILED = 1  # the exit status if a check failed
 class CommandAnswer:
     """An answer: `data` returns it as JSON, `show` prints it for people; only one is called.
 
-    `failed`: a check failed. `problem`: another error, which is raised after the output.
+    `failed`: a check failed. `timed`: JSON ends with the seconds that the command took. `problem`:
+    another error, which is raised after the output.
     """
 
     data: Callable[[], dict[str, Any]]
     show: Callable[[], None]
     failed: bool = False
+    timed: bool = False
     problem: InputError | None = None
 
 
@@ -43,12 +47,15 @@ def answering(command: Callable[..., CommandAnswer]) -> Callable[..., None]:
 
     @wraps(command)
     def wrapper(*args: Any, as_json: bool, **options: Any) -> None:
+        start_time = time.perf_counter()
         answer = command(*args, **options)
+        seconds = f"{time.perf_counter() - start_time:.6f}"
         if as_json:
+            data = answer.data() | ({"seconds": seconds} if answer.timed else {})
             encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
             # If the stream has another encoding, escapes are written, which JSON reads alike.
             ascii_only = encoding.lower().replace("-", "") != "utf8"
-            click.echo(json.dumps(answer.data(), ensure_ascii=ascii_only))
+            click.echo(json.dumps(data, ensure_ascii=ascii_only))
         else:
             answer.show()
         if answer.problem is not None:
@@ -56,9 +63,7 @@ def answering(command: Callable[..., CommandAnswer]) -> Callable[..., None]:
         if answer.failed:
             raise SystemExit(FAILED)
 
-    return click.option(
-        "--json", "as_json", is_flag=True, help="One JSON object on standard output."
-    )(wrapper)
+    return flag("--json as_json", "One JSON object on standard output.")(wrapper)
 
 
 def pick(source: object, *names: str) -> dict[str, Any]:

@@ -54,11 +54,7 @@ def order_json(order: int | None) -> dict[str, int | None]:
 
 
 def proof_json(
-    texts: "Mapping[str, Any]",
-    scheme: str,
-    proof: "Proof | ProofForEveryH",
-    seconds: str,
-    **more_keys: Any,
+    texts: "Mapping[str, Any]", scheme: str, proof: "Proof | ProofForEveryH", **more_keys: Any
 ) -> dict[str, Any]:
     """Return the keys of every proof, and `more_keys`, which also replace keys of the same names.
 
@@ -76,7 +72,6 @@ def proof_json(
         "domain": proof.domain.texts,
         "special_values": [],
         **more_keys,
-        "seconds": seconds,
     }
 
 

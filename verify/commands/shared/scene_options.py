@@ -12,9 +12,9 @@ from verify.commands.shared.input import (
     hamiltonian_of,
     hamiltonian_options,
     load_target,
-    options,
     parse_coordinates,
 )
+from verify.commands.shared.option import option, options
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
@@ -22,29 +22,21 @@ if TYPE_CHECKING:
 
 _SYSTEM_OPTIONS = ("system", "hamiltonian", "params")
 _REQUIRED_OPTIONS = ("schemes", "step_sizes")
-schemes_option = click.option(
-    "--scheme",
-    "schemes",
+schemes_option = option(
+    "--scheme schemes",
+    "NAME",
+    "lie1, lie2, …, stormer-verlet, rk4, …, or 'p_next = …; q_next = …'; repeatable.",
     type=SCHEME,
     multiple=True,
-    metavar="NAME",
-    help="lie1, lie2, …, stormer-verlet, rk4, …, or 'p_next = …; q_next = …'; repeatable.",
 )
 start_options = options(
-    click.option("--q", metavar="Q", help="Initial displacement."),
-    click.option("--p", metavar="P", help="Initial momentum."),
+    option("--q", "Q", "Initial displacement."), option("--p", "P", "Initial momentum.")
 )
 _step_options = options(
-    click.option(
-        "--step-size",
-        "step_sizes",
-        multiple=True,
-        metavar="H",
-        help="The step size, greater than 0; repeatable.",
+    option(
+        "--step-size step_sizes", "H", "The step size, greater than 0; repeatable.", multiple=True
     ),
-    click.option(
-        "--t0", metavar="T0", help="The start time, if the Hamiltonian depends on t.  [default: 0]"
-    ),
+    option("--t0", "T0", "The start time, if the Hamiltonian depends on t.  [default: 0]"),
 )
 
 
@@ -119,9 +111,9 @@ def _requested_options(values: Mapping[str, Any]) -> dict[str, Any]:
 def line_of(values: Mapping[str, Any]) -> str:
     """Return the typed options as text that a shell splits into the same words."""
     context, parts = click.get_current_context(), []
-    for option in context.command.params:
-        x = values.get(option.name or "")
+    for parameter in context.command.params:
+        x = values.get(parameter.name or "")
         for value in x if isinstance(x, tuple) else (x,):
             if value not in (None, False):
-                parts += [option.opts[-1], str(value)]
+                parts += [parameter.opts[-1], str(value)]
     return shlex.join(parts)

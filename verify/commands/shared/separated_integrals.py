@@ -8,7 +8,7 @@ from verify.commands.shared.output import pick, print_line
 from verify.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
     from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -33,29 +33,24 @@ def integrals_of(
     return measured
 
 
-def split_change(
-    hamiltonian: "Hamiltonian",
-    scheme: str,
-    structure: "MeasuredStructure",
-    step_size: "Fraction",
-    steps: int,
-    *,
-    q: Any,
-    p: Any,
-    t0: str,
-    digits: int,
-    arithmetic: str,
-) -> "IntegralParts":
-    """Return the parts of the integral's change for one step size."""
+def split_changes(
+    hamiltonian: "Hamiltonian", scheme: str, integrals: "Sequence[MeasuredStructure]",
+    step_counts: "Sequence[tuple[Fraction, int]]", options: "Mapping[str, Any]",
+) -> "list[tuple[MeasuredStructure, IntegralParts]]":  # fmt: skip
+    """Return the parts of each integral's change for each step size, with its number of steps."""
     from verify.arithmetic.exact import rational
     from verify.hamiltonians.run_domain import point_of
     from verify.runs.run_start import Start
     from verify.studies.separation.integral_parts import separate_change
 
-    point = point_of(hamiltonian, q, p)
-    start = Start(hamiltonian, scheme, step_size, point, rational(t0, "t0"))
-    at_end = structure.at_end
-    return separate_change(start, steps, at_end, digits=digits, arithmetic=arithmetic)
+    point, t0 = point_of(hamiltonian, options["q"], options["p"]), rational(options["t0"], "t0")
+    starts = [(Start(hamiltonian, scheme, h, point, t0), steps) for h, steps in step_counts]
+    precision = {name: options[name] for name in ("digits", "arithmetic")}
+    return [
+        (structure, separate_change(start, steps, structure.at_end, **precision))
+        for start, steps in starts
+        for structure in integrals
+    ]
 
 
 def change_json(structure: "MeasuredStructure", parts: "IntegralParts") -> dict[str, Any]:

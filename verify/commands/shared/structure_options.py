@@ -4,62 +4,54 @@ from collections.abc import Callable, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any
 
-import click
-
-from verify.commands.shared.input import options
+from verify.commands.shared.option import option, options
 from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
 
 _OPTIONS = options(
-    click.option(
+    option(
         "--keeps",
-        multiple=True,
-        metavar="NAME[: K]",
-        help="A structure that the step is meant to keep: area, symplectic, volume, energy,"
+        "NAME[: K]",
+        "A structure that the step is meant to keep: area, symplectic, volume, energy,"
         " momentum, angular-momentum, reversible, symmetric, conformal, poisson, or the formula of"
         " a first integral; with K, that its defect is O(h^K); repeatable.",
-    ),
-    click.option(
-        "--form", default="", metavar="FORM", help="The 2-form of symplectic, as m1*dv1^dx1."
-    ),
-    click.option(
-        "--density", default="", metavar="FORMULA", help="The density of volume, as 1/(u*v)."
-    ),
-    click.option(
-        "--poisson",
-        default="",
-        metavar="MATRIX",
-        help="The matrix of the bracket, rows by ; and entries by , as '0, u*v; -u*v, 0'.",
-    ),
-    click.option(
-        "--casimir",
-        "casimirs",
         multiple=True,
-        metavar="FORMULA",
-        help="A Casimir of the bracket, which is to be kept too; repeatable.",
     ),
-    click.option(
+    option("--form", "FORM", "The 2-form of symplectic, as m1*dv1^dx1.", default=""),
+    option("--density", "FORMULA", "The density of volume, as 1/(u*v).", default=""),
+    option(
+        "--poisson",
+        "MATRIX",
+        "The matrix of the bracket, rows by ; and entries by , as '0, u*v; -u*v, 0'.",
+        default="",
+    ),
+    option(
+        "--casimir casimirs",
+        "FORMULA",
+        "A Casimir of the bracket, which is to be kept too; repeatable.",
+        multiple=True,
+    ),
+    option(
         "--reverses",
+        "FORMULAS",
+        "The involution that turns the flow round, as '-v, x'; by default p to -p.",
         default="",
-        metavar="FORMULAS",
-        help="The involution that turns the flow round, as '-v, x'; by default p to -p.",
     ),
-    click.option(
+    option(
         "--factor",
+        "FORMULA",
+        "The factor of the form in one step, as exp(-gamma*h), of conformal.",
         default="",
-        metavar="FORMULA",
-        help="The factor of the form in one step, as exp(-gamma*h), of conformal.",
     ),
 )
-split_option = click.option(
-    "--split",
-    "splits",
-    multiple=True,
-    metavar="NAME: FIELD",
-    help="A part of --field that flows exactly, as 'A: x_dot = y*z'; the scheme is then such as"
+split_option = option(
+    "--split splits",
+    "NAME: FIELD",
+    "A part of --field that flows exactly, as 'A: x_dot = y*z'; the scheme is then such as"
     " 'A 1/2; B 1; A 1/2'; repeatable.",
+    multiple=True,
 )
 _NAMES = ("keeps", "form", "density", "poisson", "casimirs", "reverses", "factor")
 

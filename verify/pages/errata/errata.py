@@ -145,14 +145,8 @@ def _reasons(readings: Sequence[ClaimResult]) -> tuple[Prose, ...]:
 
 def _wrong_tables(view: PageView) -> list[ClaimView]:
     """Return the paper's tables that are refuted, each once."""
-    return [
-        claim
-        for claim in view.claims
-        if claim.is_table
-        and claim.result.verdict is Verdict.REFUTED
-        and claim.result.standing != "ours"
-        and not claim.is_later_reading
-    ]
+    tables = (claim for claim in view.claims if claim.is_table_of_paper)
+    return [claim for claim in tables if claim.result.verdict is Verdict.REFUTED]
 
 
 def _repaired_tables(claims: Sequence[ClaimView]) -> list[RepairedTable]:

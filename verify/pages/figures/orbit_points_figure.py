@@ -9,12 +9,7 @@ from matplotlib.figure import Figure
 
 from verify.pages.figures.axes import make_panels, name_states
 from verify.pages.figures.sheet import INK, SERIES
-from verify.scenes.results.orbit_points import (
-    MapSections,
-    PoincareResult,
-    SchemeSections,
-    StroboscopicResult,
-)
+from verify.scenes.results import orbit_points
 
 _HEIGHT, _IN_A_ROW = 330, 3
 # The limit on points in a figure, for the size of the file.
@@ -31,7 +26,8 @@ Orbit = tuple[np.ndarray, int]
 
 
 def count_drawn_looks(
-    sections: Sequence[MapSections] | Sequence[SchemeSections], starts: int = 0
+    sections: Sequence[orbit_points.MapSections] | Sequence[orbit_points.SchemeSections],
+    starts: int = 0,
 ) -> int:
     """Return the number of points of each orbit, from the first on, that are drawn.
 
@@ -46,7 +42,7 @@ def _first(points: Sequence[tuple[str, str]], count: int) -> np.ndarray:
     return np.array(points[:count], dtype=np.float64).reshape(-1, 2)
 
 
-def select_points(result: PoincareResult) -> tuple[list[list[np.ndarray]], int]:
+def select_points(result: orbit_points.PoincareResult) -> tuple[list[list[np.ndarray]], int]:
     """Return each orbit's first points (n, 2) by map, and the number of points too far out.
 
     Points too far out, as those of escaping orbits, would shrink the others: they are replaced by
@@ -68,7 +64,7 @@ def select_points(result: PoincareResult) -> tuple[list[list[np.ndarray]], int]:
     return points, outside_count
 
 
-def draw_passes(result: PoincareResult) -> Figure:
+def draw_passes(result: orbit_points.PoincareResult) -> Figure:
     """Draw each orbit in a colour, its unconfirmed part grey, with the same axes for all maps."""
     panels = {
         section.map: [(x, orbit.known) for x, orbit in zip(points, section.orbits, strict=True)]
@@ -77,7 +73,7 @@ def draw_passes(result: PoincareResult) -> Figure:
     return _draw(panels, result.draw, in_a_row=_IN_A_ROW, size=3.0)
 
 
-def draw_periods(result: StroboscopicResult) -> Figure:
+def draw_periods(result: orbit_points.StroboscopicResult) -> Figure:
     """Draw each orbit in a colour, its unconfirmed part grey; an angle is in (−π, π]."""
     count = count_drawn_looks(result.sections, 1) + 1
     panels = {}

@@ -116,8 +116,9 @@ def _digit_panels(result: WorkPrecisionResult) -> "Iterator[WorkPanel]":
 
 def _caption_of_digits(result: WorkPrecisionResult) -> str:
     return (
-        f"Certified digits are of the end state by {_systems_of(result)}; run time there is the "
-        "stepping with all that certifies it, that of float64 its compiled loop’s."
+        f"Certified digits are of the end state by {result.systems_scheme} at h = "
+        f"{result.systems_step_size}; run time there is the stepping with all that certifies it, "
+        "that of float64 its compiled loop’s."
     )
 
 
@@ -129,10 +130,6 @@ def _drawn_line(
     return DrawnLine(
         line.name, _label_with_slope(line), tuple(marks), _style_index(result, line), line.peer
     )
-
-
-def _systems_of(result: WorkPrecisionResult) -> str:
-    return f"{result.systems_scheme} at h = {result.systems_step_size}"
 
 
 def _caption(lines: Sequence[WorkLine]) -> str:

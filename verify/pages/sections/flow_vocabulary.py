@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
+from verify.pages.text.legend import terms_of
 from verify.scenes.results.regions import FlowResult
 
 
@@ -47,17 +48,7 @@ _PLANE = Words(
         "outlines, in the units of q and p. Below each number stands its error; a mean of 0 is by "
         "proof."
     ),
-    terms={
-        "Change of area": Markup(
-            "The area inside the image of a closed outline, less that inside the outline, divided "
-            "by the latter: ∮ p dq along both, refined until the quadrature’s own error is far "
-            "below the change. It equals the mean of Λ over the region, which is computed beside "
-            "it without any area."
-        ),
-        "Distance of outlines": Markup(
-            "Hausdorff’s: the farthest that a point of either outline is from the other one."
-        ),
-    },
+    terms=terms_of("region-in-plane"),
 )
 _SEVERAL = Words(
     invariant="∮ p·dq",
@@ -73,19 +64,7 @@ _SEVERAL = Words(
         "encloses, relative to the same; their sum is 1 and the change. Below each number stands "
         "its error; a mean of 0 is by proof."
     ),
-    terms={
-        "∮ p·dq": Markup(
-            "Poincaré’s invariant: p₁ dq₁ + … + pₙ dqₙ along a closed curve, the sum of the areas "
-            "that its projections to the planes (q₁, p₁), …, (qₙ, pₙ) enclose, with their signs. "
-            "The exact flow and symplectic maps keep the sum, and not each of them. Along the "
-            "outline of a region it is the integral of ω over it."
-        ),
-        "W": Markup(
-            "MᵀΩM − Ω for M the Jacobian of all N steps. Its entry at (p, q) of the plane in which "
-            "the region lies, averaged over the region, is the relative change of ∮ p·dq along the "
-            "outline, by Stokes’ theorem; it is computed without any curve."
-        ),
-    },
+    terms=terms_of("region-in-degrees"),
 )
 
 

@@ -74,11 +74,9 @@ def format_power(value: float) -> str:
 
 def describe_lambda(scene: GalleryScene) -> Iterator[str]:
     """Yield sentences on the step after which Λ in float64 is meaningless, or on its digits."""
-    separation, lost_after, resumes_at = (
-        scene.separation,
-        scene.meaningless_after,
-        scene.meaningful_from,
-    )
+    separation = scene.separation
+    lost_after = scene.meaningless_after
+    resumes_at = scene.meaningful_from
     count = count_noun(separation.steps, "step")
     if separation.plain is None:
         reason = separation.reason or separation.status

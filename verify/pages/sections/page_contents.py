@@ -96,6 +96,11 @@ class ClaimView:
         )
 
     @property
+    def is_table_of_paper(self) -> bool:
+        """True for the first reading of a table that the paper prints."""
+        return self.is_table and self.result.standing != "ours" and not self.is_later_reading
+
+    @property
     def step_sizes(self) -> list[str]:
         return [head.removeprefix("h = ") for head in self.result.details[0][1:]]
 

@@ -97,10 +97,8 @@ class _FormulaReader:
         # An opening and a closing bar are the same sign. It closes if it stands after a symbol, or
         # before the end, a space, a comma or a closing bracket.
         if end in ("|", "‖") and self._peek() == end:
-            sign_before, sign_after = (
-                self.text[self.position - 1],
-                self.text[self.position + 1 : self.position + 2],
-            )
+            sign_before = self.text[self.position - 1]
+            sign_after = self.text[self.position + 1 : self.position + 2]
             return sign_before not in " (," or sign_after in ("", " ", ")", ",")
         return bool(end) and self._peek() == end
 

@@ -1,9 +1,9 @@
-"""The legend of a page: signs of verdicts, terms with their meanings, kinds of runs in words.
+"""The legend of a page: signs of verdicts, terms with their meanings, kinds of runs in words."""
 
-Terms that several sections explain in the same words are defined here.
-"""
-
+import re
 from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
 
 from markupsafe import Markup
 
@@ -20,62 +20,24 @@ SIGNS = {
     Verdict.REFUTED: ("✗", "a counterexample, or the proof of the contrary, contradicts it"),
     Verdict.UNDECIDED: ("?", "neither shown nor contradicted by what was computed"),
 }
-# Terms of every page.
-ALWAYS = {
-    "ΔJ": Markup(
-        "det J − 1, by how much one step changes area, or volume in more than two coordinates, "
-        "with J the Jacobian matrix of the step map z → z′. It is evaluated from its closed form, "
-        "not as a difference from 1, which would cancel."
-    ),
-    "MSE": Markup("The mean of ΔJ² over the N steps; lg MSE is its decimal logarithm."),
-    "Λ": Markup(
-        "Π (1 + ΔJ) − 1 over the N steps: by how much all steps together change it. "
-        "<em>By closed form</em>: from the closed form of ΔJ. <em>The plain way</em>: four entries "
-        "of J, determinant, product, minus one, all in working precision, as one would program it "
-        "at first."
-    ),
-}
-# Terms of n degrees of freedom.
-FORM_TERMS = {
-    "S": Markup(
-        "JᵀΩJ − Ω, by how much one step changes the symplectic form Ω = Σ dp<sub>i</sub> ∧ "
-        "dq<sub>i</sub>; max |S| is the largest entry in any step. S = 0 is more than det J = 1."
-    ),
-    "W": Markup("The same of all steps together: W ← W + MᵀSM, with M the Jacobian so far."),
-}
-# Terms of separations, in Λ and in W, and of runs.
-SEPARATED = {
-    "Truncation, rounding": Markup(
-        "Truncation is Λ in exact arithmetic from the exact inputs: all that the scheme itself "
-        "does to area, since the exact flow has Λ = 0. Rounding is all that float64 adds to it, "
-        "split along a chain so that the parts add up exactly: <code>input</code>, the step size, "
-        "parameters and initial values rounded; <code>trajectory</code>, the states stepped in "
-        "float64; <code>determinant</code>, det J (or ΔJ) of each step rounded; "
-        "<code>product</code>, their product (or sum of logarithms) rounded."
-    )
-}
-FORM_SEPARATION_TERMS = {
-    "Truncation, rounding in W": Markup(
-        "Truncation is W in exact arithmetic from the exact inputs. Rounding is all that float64 "
-        "adds to it, split along a chain so that the parts add up exactly: <code>input</code>, the "
-        "step size, parameters and initial values rounded; <code>trajectory</code>, the states "
-        "stepped in float64; <code>derivatives</code>, J (or S) of each step rounded; "
-        "<code>product</code>, products of matrices and their sums rounded."
-    )
-}
-RAN = {
-    "Enclosed, estimated": Markup(
-        "How an error bound was got. <em>Enclosed</em>: rigorous, the value is proved to lie "
-        "within it. <em>Estimated</em>: from a rerun at higher precision, which certifies nothing "
-        "by itself."
-    ),
-    "Number systems": Markup(" ").join(
-        Markup("<code>{}</code>: {}.").format(system.name, system.about)
-        for system in sorted(
-            map(number_systems.about, number_systems.names()), key=lambda x: x.cost
-        )
-    ),
-}
+_GLOSSARY = Path(__file__).parent.parent / "templates" / "glossary.html"
+_GROUP = re.compile(r'<dl id="(.*?)">(.*?)</dl>', re.DOTALL)
+_TERM = re.compile(r"<dt>(.*?)</dt>\s*<dd>(.*?)</dd>", re.DOTALL)
+
+
+@cache
+def terms_of(group: str) -> dict[str, Markup]:
+    """Return the terms of a group in `templates/glossary.html`, with their meanings."""
+    terms = _TERM.findall(dict(_GROUP.findall(_GLOSSARY.read_text(encoding="utf-8")))[group])
+    return {term: Markup(" ".join(meaning.split())) for term, meaning in terms}  # noqa: S704
+
+
+def terms_of_runs() -> dict[str, Markup]:
+    """Return the kinds of error bounds, and the number systems, with their meanings."""
+    systems = sorted(map(number_systems.about, number_systems.names()), key=lambda x: x.cost)
+    sentences = (Markup("<code>{}</code>: {}.").format(x.name, x.about) for x in systems)
+    return terms_of("runs") | {"Number systems": Markup(" ").join(sentences)}
+
 
 # -- counts of judged runs in a sentence ----------------------------------------------------------
 

@@ -8,11 +8,13 @@ from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import decimal, text
 from verify.execution.keeper import NOTHING
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import BALLS, Argument, Check, Step, refutation, same, step
+from verify.papers.argument import BALLS, Argument, ArgumentTexts, Check, Step, same
 from verify.papers.exact_maps import run_symbolically
 from verify.papers.lie_derivative_scheme.examples import enclosures, errors, factor
 from verify.runs.task import RunTask
 from verify.schemes.methods.taylor.lie import lie_map
+
+_TEXTS = ArgumentTexts(__file__)
 
 LEVELS = "-(q - p**3) + (q - p**3)**2/2"  # H is a function of u = q − p³, which it keeps
 _STEPS = (10, 100, 1000)
@@ -25,26 +27,7 @@ _LEVEL = Q - P**3
 
 def eq_9_kept() -> Argument:
     """Refute Eq. 9 in a norm with z̃_k on its right, which is 0 at k = 1 where its left is not."""
-    return refutation(
-        "`z̃_1` and `z_1` are both one step from the initial value, so that the right side is 0 at "
-        "k = 1 in every norm and for every L; for the oscillator the left side, |Φ(`z̄_1`) − "
-        "Φ(`z_1`)|, is not",
-        [
-            step(
-                "The run begins on the exact solution, `z_0` = `z̄_0`; so "
-                "``z̃_1 = Φ(z̄_0) = Φ(z_0) = z_1``, and |`z̃_1` − `z_1`| = 0.",
-            ),
-            step(
-                "The left side at k = 1 is |`z̃_2` − `z_2`| = |Φ(`z̄_1`) − Φ(`z_1`)|. For the "
-                "oscillator Φ turns and stretches the plane by a factor R, |R| > 0, and `z̄_1` − "
-                "`z_1` is the local error, which is not 0: so it is not 0 either.",
-                *map(_after_two, _ETAS),
-            ),
-        ],
-        setting="Read |…| as a norm of the plane, and keep `z̃_k` on the right as printed.",
-        remark="For every scheme and every H it is so wherever the first step has a local error "
-        "and Φ is one-to-one. With `z̄_k` in place of `z̃_k`, as Eq. 8 and 10 need it, it holds.",
-    )
+    return _TEXTS.refutation("eq_9_kept", after_two=map(_after_two, _ETAS))
 
 
 def _after_two(eta: int, h: Fraction = Fraction(1, 10)) -> Check:
@@ -66,50 +49,19 @@ def _after_two(eta: int, h: Fraction = Fraction(1, 10)) -> Check:
 
 def eq_10_components(formula: str = LEVELS) -> Argument:
     """Refute Eq. 10 for p alone, e_k for e_n: at k = 1 its right side is 0, its left is not."""
-    return refutation(
-        "for H = −(q − p³) + (q − p³)²/2, η = 2, from (0, 0), `e^p_1` = 0 and every `C^p_k` = 0, "
-        "so that Eq. 10 says `e^p_2` ≤ 0 whatever `L_p` is; but `e^p_2` = h⁴",
-        [
-            *_steps_for(formula),
-            step(
-                "So `e^p_1` = 0 and ``e^p_2 = h(v_1 − 1) = h^4``, while the right sides of Eq. 10 "
-                "at k = 1, (1 + h`L_p`) `e^p_1` + `C^p_2` h³ and `e^(hL_p)` `e^p_1` + `C^p_2` h³, "
-                "are 0.",
-                _second_step(formula),
-            ),
-        ],
-        setting=_SETTING,
-        remark="The p-component has no local error here, and the error in q goes over into it.",
+    return _TEXTS.refutation(
+        "eq_10_components", steps_for=_steps_for(formula), second_step=_second_step(formula)
     )
 
 
 def eq_11(formula: str = LEVELS) -> Argument:
     """Refute Eq. 11 for p alone: its right side is 0, and e^p is about h²/2 at t = 1."""
-    return refutation(
-        "for H = −(q − p³) + (q − p³)²/2, η = 2, from (0, 0), the exact solution is p = t, q = t³, "
-        "`e^p_1` = 0 and every `C^p_m` = 0, so that Eq. 11 says `e^p_k` = 0 whatever `L_p` and "
-        "`C̃_p` are; but at t = 1 `e^p` ≥ h²(1 − h)/2",
-        [
-            *_steps_for(formula),
-            step(
-                "So `v_k` ≥ 1 + kh³, and ``p_N − Nh = h Σ_{k<N} (v_k − 1) ≥ h^4 N(N − 1)/2``, "
-                "which at Nh = 1 is h²(1 − h)/2.",
-                _check_sum(),
-                tried=[_check_at_1(formula, n) for n in _STEPS],
-            ),
-            step("The right sides of Eq. 11 are 0: `e^p_1` is, and so is every `C^p_m`."),
-        ],
-        setting=_SETTING,
-        remark="It makes no difference whether e is |`p̄_k` − `p_k`| or, as Eq. 7 has it, |`p̃_k` − "
-        "`p_k`|: `p̃_k` = `p̄_k`, as `C^p_k` = 0. What holds is Eq. 11 for both components in one "
-        "norm, given Eq. 10.",
+    return _TEXTS.refutation(
+        "eq_11",
+        steps_for=_steps_for(formula),
+        check_sum=_check_sum(),
+        check_at_1=[_check_at_1(formula, n) for n in _STEPS],
     )
-
-
-_SETTING = (
-    "Write u = q − p³ and v = 1 − u. By Eq. 1 p' = −`H_q` = v and q' = `H_p` = 3p²v, so that u' = "
-    "0: from (0, 0) the solution has v = 1, p = t, q = t³."
-)
 
 
 def _steps_for(formula: str) -> list[Step]:
@@ -129,16 +81,7 @@ def _steps_for(formula: str) -> list[Step]:
         [scheme.p_next - P - H_STEP * v, sympy.expand(v_next - v - H_STEP**3 * v**3)],
         ("p", "q", "h"),
     )
-    return [
-        step("This is the field, and v is kept by it.", field),
-        step(
-            "All Xⁿp, n ≥ 2, are Xⁿ⁻¹v = 0: lie2 makes no error in p in a step from any point, so "
-            "that all `C^p_m` = 0, and `p_1` = h = `p̄_1`, `e^p_1` = 0. In a step of lie2 "
-            "``p' = p + hv, v' = v + h^3 v^3``.",
-            field,
-            after_step,
-        ),
-    ]
+    return _TEXTS.steps("_steps_for", field=field, after_step=after_step)
 
 
 def _second_step(formula: str) -> Check:

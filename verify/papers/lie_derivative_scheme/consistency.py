@@ -18,13 +18,14 @@ import sympy
 from verify.algebra.symbols import H_STEP, P
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.exact import text
-from verify.papers.argument import BALLS, NUMBERS, Argument, Check, proof, step, vanishes
+from verify.papers.argument import BALLS, NUMBERS, Argument, ArgumentTexts, Check, vanishes
 from verify.papers.differential_polynomials import Differential, Poly, flow_of_every_hamiltonian
 from verify.papers.exact_maps import RationalPoint, areas, map_from_texts
 from verify.papers.lie_derivative_scheme.examples import enclosures, oscillator
-from verify.proof.assistant.shipped_theory import ShippedTheorem
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
+
+_TEXTS = ArgumentTexts(__file__)
 
 TIME = 20000
 STEP_SIZES = (Fraction(1, 100), Fraction(1, 1000), Fraction(1, 10**6), Fraction(1, 10**9))
@@ -62,50 +63,15 @@ def small_determinant(hamiltonian: bool = True) -> Check:
 def criteria_of_consistent_schemes(hamiltonian: bool = True) -> Argument:
     """Prove criteria 2, 3 and 4 also for explicit Euler, which blows every area up."""
     growth = enclosed_growth(STEP_SIZES[0])[1]
-    return proof(
-        "every smoothly consistent scheme has ΔJ = O(h²), hence MSE = O(h⁴) and Λ = O(h) on every "
-        "[0, T]: all satisfy all three, explicit Euler too, whose Λ for the oscillator at h = "
-        f"{text(STEP_SIZES[0])}, T = {TIME} is {growth}",
-        [
-            step(
-                "Since det φ' = 1 (Liouville), ``det Φ' = 1 + O(h^2)`` uniformly on compact sets.",
-                small_determinant(hamiltonian),
-            ),
-            step(
-                "On every [0, T] on which the exact solution exists the run stays in a compact set "
-                "for small h, so `ΔJ_k` = O(h²) = o(h): criterion 2 holds.",
-            ),
-            step(
-                "A mean is at most its greatest term, so ``MSE = O(h^4) = o(h)``: criterion 3 "
-                "holds.",
-                ShippedTheorem("Sums", "sum_of_less"),
-            ),
-            step(
-                "``|Λ| ≤ e^(T O(h)) − 1 → 0``: criterion 4 holds.",
-                ShippedTheorem("Theorems", "error_over_many_steps"),
-            ),
-            step(
-                "So they hold for every smoothly consistent scheme, whatever it does to areas "
-                "otherwise. The explicit Euler scheme, lie1, for H = (p² + q²)/2 has ΔJ = h² at "
-                f"every point, so ``1 + Λ = (1 + h^2)^(T/h)``, and for h = {text(STEP_SIZES[0])} "
-                f"and T = {TIME} the Λ of every region is {growth}.",
-                _euler(),
-                _over_time(STEP_SIZES[0]),
-            ),
-            step(
-                "Yet Λ → 0 as h → 0, by ``(1 + h^2)^(T/h) ≤ e^(Th)``, and criteria 2 to 4 are "
-                "satisfied.",
-                ShippedTheorem("Product", "power_below_exp"),
-                tried=[_over_time(h) for h in STEP_SIZES[1:]],
-            ),
-        ],
-        setting="""A step Φ is smoothly consistent with Eq. 1 where ``Φ(z) = φ(z) + h^(m+1)
-        ρ(z, h)``, m ≥ 1, φ the exact flow over h, with a ρ whose values and first
-        derivatives in z are continuous up to h = 0.""",
-        remark="""For m > 1 ΔJ is even O(`h^(m+1)`). The criteria are asymptotic in h, and
-        for a given h they say nothing. What tells schemes apart is the order r of ΔJ =
-        O(`h^r`), the growth of Λ with T, and criterion 1. That ρ is smooth is needed: see
-        the counterexample of order 1 for H = q.""",
+    return _TEXTS.proof(
+        "criteria_of_consistent_schemes",
+        small_determinant=small_determinant(hamiltonian),
+        euler=_euler(),
+        over_time=_over_time(STEP_SIZES[0]),
+        other_step_sizes=[_over_time(h) for h in STEP_SIZES[1:]],
+        step_size=text(STEP_SIZES[0]),
+        time=str(TIME),
+        growth=str(growth),
     )
 
 
@@ -143,46 +109,12 @@ def consistency_is_not_enough(ripple: str = RIPPLE) -> Argument:
     checks = [_check_ripple(ripple.format(n=m + 1, m=m), m) for m in ORDERS]
     local, whole, run = zip(*checks, strict=True)
     limit, growth = _tends_to_e(STEPS)
-    return proof(
-        "for H = q the scheme p' = p − h + h² sin(2πp/h)/(2π), q' = q is of order 1, and along its "
-        "run from (0, 0) every `ΔJ_k` is h, so that Λ = `(1 + h)^N` − 1 → e − 1 on [0, 1]",
-        [
-            step(
-                "The exact flow is p ↦ p − h, q ↦ q. The local error is ``h^(m+1) "
-                "sin(2πp/h^m)/(2π)``, at most `h^(m+1)`/(2π) everywhere, and p' = p + hψ(p) with "
-                "``ψ' = cos(2πp/h^m)``, which is at most 1 in size; here for m = 1, 2, 3.",
-                *local,
-            ),
-            step("By the standard argument the scheme converges with order m (see convergence)."),
-            step(
-                "From (p, q) = (0, 0) with h = 1/N the run is `p_k` = −kh exactly, for there "
-                "2πp/`h^m` = −2πk `N^(m−1)` and the sine is 0. The cosine is 1, so that for every "
-                "k ``ΔJ_k = h cos(2πp/h^m) = h``.",
-                *whole,
-                *run,
-            ),
-            step(
-                "Hence |`ΔJ_k`| is no higher-order infinitesimal of h: criterion 2 fails. MSE = h² "
-                "is, so that criterion 3 holds.",
-                *whole,
-            ),
-            step(
-                "``Λ = (1 + h)^N − 1 ≥ 1``: criterion 4 fails.",
-                ShippedTheorem("Product", "bound_attained"),
-                ShippedTheorem("Product", "product_above_sum"),
-            ),
-            step(
-                "It tends to e − 1.",
-                tried=[Check("Λ tends to e − 1 on [0, 1]", limit, growth, BALLS)],
-            ),
-            step(
-                "The local error is `h^(m+1)` ρ with ``ρ = sin(2πp/h^m)/(2π), ∂ρ/∂p = "
-                "cos(2πp/h^m)/h^m``, which is not bounded as h → 0: the scheme is consistent, and "
-                "not smoothly so.",
-                *local,
-            ),
-        ],
-        setting="Let H = q, and Φ the map p' = p − h + `h^(m+1)` sin(2πp/`h^m`)/(2π), q' = q.",
+    return _TEXTS.proof(
+        "consistency_is_not_enough",
+        local=local,
+        whole=whole,
+        run=run,
+        tends_to_e=Check("Λ tends to e − 1 on [0, 1]", limit, growth, BALLS),
     )
 
 

@@ -9,12 +9,13 @@ import sympy
 
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.arb import rational_ball
-from verify.papers.argument import BALLS, Argument, Check, proof, refutation, same, step
+from verify.papers.argument import BALLS, Argument, ArgumentTexts, Check, same
 from verify.papers.elementary_identities import geometric
 from verify.papers.lie_derivative_scheme import examples
-from verify.proof.assistant.shipped_theory import ShippedTheorem
 from verify.proof.order_for_one_h import convergence_of
 from verify.schemes.methods.taylor.lie import lie_map
+
+_TEXTS = ArgumentTexts(__file__)
 
 ETAS = range(1, 5)
 STEPS = (10, 100, 1000)
@@ -23,54 +24,11 @@ _LIPSCHITZ = 1  # of lie1 for the oscillator: ψ = f, and the norm of f' is 1
 
 def convergence(shift: int = 0) -> Argument:
     """Prove that the global error is O(h^η); `shift` is added to the orders, as a control."""
-    return proof(
-        "it holds for every H of class `C^(η+1)`, with one Lipschitz constant for (p, q) together "
-        "in place of Eq. 9's two",
-        [
-            step(
-                "Local error. Φ is the Taylor polynomial of degree η of the exact flow, so for a "
-                "smooth H one step from the exact solution is off by C `h^(η+1)` at most; for both "
-                "systems by no higher power.",
-                ShippedTheorem("Theorems", "flow_has_taylor_series"),
-                *local_orders(shift),
-            ),
-            step(
-                "By the remainder’s closed form (Lagrange), which needs η + 1 derivatives of H "
-                "alone, ``|z̄_{k+1} − Φ(z̄_k)| ≤ M h^(η+1)/(η+1)!`` with M the maximum of "
-                "|`X^(η+1)` z| over the solution.",
-            ),
-            step(
-                "Stability. Φ(z) = z + h ψ(z) with ψ = Σ `h^(n−1)`/n! Xⁿz, n = 1 … η, of class C¹; "
-                "let L be the maximum of the norm of ψ' over K for 0 < h ≤ h₀. For a z within r of "
-                "`z̄_k` the segment from `z̄_k` to z lies in K, so that ``|Φ(z̄_k) − Φ(z)| ≤ (1 + "
-                "hL) |z̄_k − z|``. This is Eq. 9 in a norm of the plane, for both components "
-                "together.",
-            ),
-            step(
-                "The triangle inequality, Eq. 8, gives for `E_k` = |`z̄_k` − `z_k`|, `E_0` = 0, as "
-                "long as `E_k` ≤ r: ``E_{k+1} ≤ (1 + hL) E_k + M h^(η+1)/(η+1)!``.",
-                ShippedTheorem("Sums", "size_of_sum"),
-            ),
-            step(
-                "By induction ``E_k ≤ M h^η/(η+1)! (e^(LT) − 1)/L`` for all kh ≤ T.",
-                ShippedTheorem("Product", "errors_below_exp"),
-                geometric(),
-                tried=[_within_the_bound(eta, eta + shift) for eta in ETAS],
-            ),
-            step(
-                "Where h is so small that the right side is at most r, the numerical solution "
-                "never leaves K before T, and the induction closes. Hence |`p̄_k` − `p_k`| and "
-                "|`q̄_k` − `q_k`| are O(`h^η`) on [t₀, `t_end`].",
-            ),
-        ],
-        setting="""Let H be of class `C^(η+1)` near the exact solution z̄(t), t₀ ≤ t ≤
-        `t_end`, and let K be the closed tube of some radius r around it in which this
-        holds; T = `t_end` − t₀. Write Φ for the step and `z̄_k` for the exact solution at
-        t₀ + kh.""",
-        remark="""What fails on the way as it is printed: Eq. 7 calls |p̃ − p| the global
-        error, which is |p̄ − p|; Eq. 9 has the p-difference alone on its right side, and
-        `p̃_k` in it for `p̄_k`; Eq. 10 and 11 are of p alone and of q alone; Eq. 10 has
-        `e_n` for `e_k`; and n in the exponents of Eq. 10 and 11 is η.""",
+    return _TEXTS.proof(
+        "convergence",
+        local_orders=local_orders(shift),
+        geometric=geometric(),
+        within_the_bound=[_within_the_bound(eta, eta + shift) for eta in ETAS],
     )
 
 
@@ -136,32 +94,12 @@ def eq_10(fixed: bool = True) -> Argument:
         f"{ratio_texts}: {'grows like N' if grows else 'stays bounded'}",
         BALLS,
     )
-    return refutation(
-        "with `e_n` in place of `e_k` the error would be O(`h^(η+1)`) after any number of steps; "
-        f"for the oscillator and η = 1 it is h/2 to leading order at T = 1 (C would have to be "
-        f"{ratio_texts} for N = {_list_numbers(STEPS)})",
-        [
-            step(
-                "`e_n` is the error after η steps, which is O(`h^(η+1)`) whatever k is; so Eq. 10 "
-                "would bound `e_{k+1}` by O(`h^(η+1)`) for all k, one order better than Eq. 11.",
-            ),
-            step(
-                "For H = (p² + q²)/2 and η = 1 a step takes |z|² to (1 + h²) |z|², so that "
-                "``|z_k| = (1 + h^2)^(k/2) |z_0|``, while the exact solution keeps |z|.",
-                _length_grows(),
-            ),
-            step(
-                "So at T = 1 the norm of the error is at least, for h ≤ 1/2, ``(1 + h^2)^(1/(2h)) "
-                "− 1 ≥ h/2`` (Bernoulli), and one of its two components at least h/3, which no C "
-                "h² bounds.",
-                tried=[recursion],
-            ),
-        ],
-        setting="In Eq. 10 n is the order η of the truncated exponential, as its exponent "
-        "`h^(n+1)` and the text below it say.",
-        remark="It is a misprint: with `e_k` for `e_n` the second inequality of Eq. 10 is 1 + hL ≤ "
-        "`e^(hL)`, and Eq. 11 follows by iteration for any sequence with `e_{k+1}` ≤ (1 + hL) "
-        "`e_k` + C `h^(η+1)`.",
+    return _TEXTS.refutation(
+        "eq_10",
+        length_grows=_length_grows(),
+        recursion=recursion,
+        ratios=ratio_texts,
+        numbers=_list_numbers(STEPS),
     )
 
 

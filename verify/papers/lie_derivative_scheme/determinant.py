@@ -8,12 +8,14 @@ import sympy
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, Check, proof, refutation, same, step
+from verify.papers.argument import Argument, ArgumentTexts, Check, same
 from verify.papers.elementary_identities import derivative_at_rest, derivative_of_the_field
 from verify.papers.lie_derivative_scheme import families
 from verify.papers.lie_derivative_scheme.examples import SYSTEMS, with_symbols
 from verify.proof.order_for_one_h import convergence_of, prove
 from verify.schemes.methods.taylor.lie import lie_map
+
+_TEXTS = ArgumentTexts(__file__)
 
 ETAS = range(1, 6)
 # det J = 1 exactly, and the scheme is not the flow.
@@ -24,35 +26,13 @@ SINGULAR = "q**2/p"  # det Hess H = 0 everywhere, and still ΔJ ≠ 0
 def determinant_of_the_examples(names: Sequence[str] = SYSTEMS) -> Argument:
     """Prove det J ≠ 1 for the paper's systems at equilibrium, for every η and almost every h."""
     at_rest = [_check_at_rest(name, eta) for name in names for eta in ETAS]
-    return proof(
-        "wherever H has an equilibrium with D = det Hess H ≠ 0, as both systems have at (0, 0), "
-        "det J of lie2 is 1 + h⁴D²/4 there, and for every η it is 1 for finitely many h only",
-        [
-            step(
-                "At a critical point z₀ of H f = 0, and with A = f'(z₀) ``(Xg)' = g''f + g'A = "
-                "g'A``. So the derivative of Xⁿz is Aⁿ, and J = R(hA), R the truncated exponential "
-                "of degree η.",
-                derivative_at_rest(),
-            ),
-            step(
-                "A has trace 0 and determinant D = det Hess H(z₀), hence eigenvalues ±μ with μ² = "
-                "−D, and ``det J = R(hμ) R(−hμ)``.",
-                derivative_of_the_field(),
-            ),
-            step(
-                "This is a polynomial in h of degree 2η whose coefficient of `h^(2η)` is "
-                "``(−1)^η μ^(2η)/(η!)^2 = D^η/(η!)^2``.",
-                _last_coefficients(),
-            ),
-            step("If D ≠ 0 it is not constant, so det J = 1 at z₀ for at most 2η values of h."),
-            step("For η = 2 it is ``1 + h^4 D^2/4 > 1`` for every h > 0.", families.equilibrium()),
-            step(
-                "The Duffing oscillator (for every δ) and the pendulum have D = 1 at (0, 0): for "
-                "them the sentence is right, whatever η is.",
-                *at_rest,
-            ),
-        ],
-        setting="f = (−`H_q`, `H_p`) is the field of Eq. 1.",
+    return _TEXTS.proof(
+        "determinant_of_the_examples",
+        derivative_at_rest=derivative_at_rest(),
+        derivative_of_the_field=derivative_of_the_field(),
+        last_coefficients=_last_coefficients(),
+        equilibrium=families.equilibrium(),
+        at_rest=at_rest,
     )
 
 
@@ -94,44 +74,14 @@ def _check_at_rest(name: str, eta: int) -> Check:
 def determinant_of_every_h(formulas: Sequence[str] = PRESERVED) -> Argument:
     """Refute det J ≠ 1 for every H, by H with det J ≡ 1 and a truncation error."""
     triangular, *powers_of_forms = map(area_is_preserved, formulas)
-    return refutation(
-        "for H = p³/6 + q the local error of lie2 is h³/6 in q, and det J = 1 for all p, q, h; so "
-        "it is for H = `(p² + q²)^(3/4)`, where lie2 spirals outwards; see the classification",
-        [
-            step(
-                "For H = p³/6 + q one has ``p' = p − h, q' = q + h p^2/2 − h^2 p/2``, while the "
-                "exact flow has another h³/6 in q: the local truncation error is not 0. J is "
-                "triangular with ones on its diagonal, so det J = 1 for all p, q and h.",
-                triangular,
-            ),
-            step(
-                "For H = `(p² + q²)^(3/4)` away from the origin write I = (p² + q²)/2: the flow "
-                "turns each circle with the frequency Ω(I) = dH/dI, proportional to `I^(−1/4)`. A "
-                "step of lie2 turns it by an angle that depends on I alone, and takes I to ``I (1 "
-                "+ h^4Ω^4/4) = I + c h^4``, c a constant.",
-                _spirals(),
-            ),
-            step(
-                "In the coordinates (I, angle), in which areas are dI dφ, that has determinant 1: "
-                "lie2 preserves area exactly, although the energy grows in every step. A "
-                "truncation error is thus no reason for det J ≠ 1.",
-                *powers_of_forms,
-            ),
-            step(
-                "In general, with D = det Hess H and `T_ij` = `Σ_k` `∂_j` adj`(Hess H)_ik` `∂_k` "
-                "H, ``ΔJ = (h^3/2) X D + (h^4/4)(D^2 + det T)``, so det J = 1 for all h (or for "
-                "two values h > 0) if and only if X D = 0 and det T = −D².",
-                families.coefficients(),
-            ),
-            step(
-                "D = 0 everywhere is not enough: H = q²/p has D = 0 and ``ΔJ = −h^4 q^4/p^8``.",
-                _singular(),
-            ),
-            step("H = F(ℓ) + m with linear ℓ and m has det J = 1.", families.linear()),
-        ],
-        remark="For H = T(p) + V(q) det J = 1 if and only if T'' = 0 or V'' = 0, for a polynomial "
-        "H if and only if H = F(ℓ) + m or H = F(ℓ + m²) with linear functions ℓ, m of p and q: see "
-        "the classification.",
+    return _TEXTS.refutation(
+        "determinant_of_every_h",
+        triangular=triangular,
+        spirals=_spirals(),
+        powers_of_forms=powers_of_forms,
+        coefficients=families.coefficients(),
+        singular=_singular(),
+        linear=families.linear(),
     )
 
 

@@ -6,55 +6,21 @@ import sympy
 
 from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import decimal, text
-from verify.papers.argument import NUMBERS, Argument, Check, Step, proof, refutation, step, vanishes
+from verify.papers import exact_maps
+from verify.papers.argument import NUMBERS, Argument, ArgumentTexts, Check, Step, vanishes
 from verify.papers.differential_polynomials import flow_of_every_hamiltonian
 from verify.papers.elementary_identities import product_of_determinants
-from verify.papers.exact_maps import (
-    RationalPoint,
-    areas,
-    jacobian,
-    next_point,
-    run_symbolically,
-    value,
-)
-from verify.papers.lie_derivative_scheme.examples import (
-    FRICTION,
-    TO_AND_FRO,
-    ExampleMap,
-    duffing_step,
-)
-from verify.proof.assistant.shipped_theory import ShippedTheorem
+from verify.papers.lie_derivative_scheme import examples
+
+_TEXTS = ArgumentTexts(__file__)
 
 _H = Fraction(1, 10)
-_START = RationalPoint(Fraction(1, 2), Fraction(1))
-_FLOW = ShippedTheorem("Taylor", "flow_has_no_defect")
-CHAIN = ShippedTheorem("Differential", "slopes_of_composition")
+_START = exact_maps.RationalPoint(Fraction(1, 2), Fraction(1))
 
 
 def eq_14(highest: int = 5, eta: int = 5) -> Argument:
     """Prove that the exact flow has det 1; checked up to h^highest by lie`eta` for a generic H."""
-    return proof(
-        "the exact flow has det = 1 over every step, so det `J_k` − 1 is by how much one step’s "
-        "determinant is off, a local error, and the relative change of a small region’s area",
-        [
-            step(
-                "Eq. 1 has no divergence, so by Liouville’s theorem the exact flow has determinant "
-                "1 at every point and over every step: in its Taylor series no power of h changes "
-                "it.",
-                _FLOW,
-                _check_flow(highest, eta),
-            ),
-            step(
-                "Hence `ΔJ_k` = det `J_k` − 1 is the difference, in step k alone, from what is "
-                "exact; it is 0 up to `h^η` for lieη, whose step agrees with the flow so far.",
-                ShippedTheorem("Theorems", "determinant_of_lie_in_plane"),
-            ),
-            step(
-                "By the change of variables a small region around `z_k` of area A has an image of "
-                "area ``A (1 + ΔJ_k) + o(A)``.",
-            ),
-        ],
-    )
+    return _TEXTS.proof("eq_14", check_flow=_check_flow(highest, eta))
 
 
 def _check_flow(highest: int, eta: int) -> Check:
@@ -68,35 +34,19 @@ def _check_flow(highest: int, eta: int) -> Check:
 def eq_15(true: int = 1, steps: int = 3) -> Argument:
     """Prove that MSE is the mean of (det J − 1)², 1 the true value; `true` is used in its place."""
     squares = mean_of_squares(true, steps)
-    return proof(
-        "Eq. 15 is the mean of the squares of det `J_k` − 1, and 1 is the true value of the "
-        "determinant",
-        [
-            step(
-                "By Liouville’s theorem the exact flow has determinant 1, so `ΔJ_k` is the "
-                "calculated value less the true one.",
-                _FLOW,
-                _check_flow(3, 3),
-            ),
-            step(
-                "Eq. 15 is the mean of its squares over the N steps of [t₀, `t_end`]: "
-                "``MSE = (1/N) Σ_{k} (det J_k − 1)^2``.",
-                tried=[squares],
-            ),
-        ],
-    )
+    return _TEXTS.proof("eq_15", check_flow=_check_flow(3, 3), squares=squares)
 
 
 def mean_of_squares(true: int = 1, steps: int = 3) -> Check:
     """Check the closed form of MSE against det J from its entries; `true` stands for 1."""
-    scheme, point, dets = duffing_step(), _START, []
+    scheme, point, dets = examples.duffing_step(), _START, []
     for _ in range(steps):
         # det J from the entries of J, and not from the closed form of ΔJ, which is under test.
-        a, b, c, d = jacobian(scheme, point, _H)
+        a, b, c, d = exact_maps.jacobian(scheme, point, _H)
         dets.append(a * d - b * c)
-        point = next_point(scheme, point, _H)
+        point = exact_maps.next_point(scheme, point, _H)
     mean = sum(((x - true) ** 2 for x in dets), Fraction(0)) / steps
-    mse = areas(scheme, _START, _H, steps).mse
+    mse = exact_maps.areas(scheme, _START, _H, steps).mse
     return Check(
         f"Duffing, δ = 1, lie2, h = {text(_H)}, (p, q) = {_START}, N = {steps}: the mean of (det J "
         f"− {true})², det J from its entries, and the MSE by the closed form",
@@ -108,7 +58,7 @@ def mean_of_squares(true: int = 1, steps: int = 3) -> Check:
 
 def eq_15_sum(steps: int = 2) -> Argument:
     """Refute that Eq. 15 is the sum of the squares, which is N times as much."""
-    run_areas = areas(duffing_step(), _START, _H, steps)
+    run_areas = exact_maps.areas(examples.duffing_step(), _START, _H, steps)
     total = sum((x * x for x in run_areas.delta_j), Fraction(0))
     differ = Check(
         f"Duffing, δ = 1, lie2, h = {text(_H)}, (p, q) = {_START}, N = {steps}: Σ `ΔJ_k`² and MSE",
@@ -116,58 +66,31 @@ def eq_15_sum(steps: int = 2) -> Argument:
         f"`{decimal(total, 4)}` and `{decimal(run_areas.mse, 4)}`",
         NUMBERS,
     )
-    return refutation(
-        "Eq. 15 is the mean: the sum of the squares is N times as much",
-        [
-            step(
-                "Eq. 15 has the factor 1/N. For two steps of lie2 on the Duffing oscillator the "
-                "sum of the squares is twice the MSE.",
-                differ,
-            ),
-        ],
-    )
+    return _TEXTS.refutation("eq_15_sum", differ=differ)
 
 
 def criterion_4(stray: Fraction = Fraction(0)) -> Argument:
     """Prove that 1 + Λ is the determinant of the map of all N steps; `stray` is added to it."""
-    return proof(
-        "by the chain rule 1 + Λ is the determinant of the map of all N steps at the initial "
-        "value, so that Λ → 0, uniformly on a region of initial values, says that areas within it "
-        "change by o(1) over the whole of [t₀, `t_end`]",
-        [
-            *determinant_of_all_steps(stray),
-            step(
-                "By the change of variables the area of a region’s image after N steps is ``∫ (1 + "
-                "Λ) dp dq`` over the region. If |Λ| ≤ ε for all of its initial values, then the "
-                "area changes by ε of it at most.",
-            ),
-        ],
-        remark="From one initial value alone Λ tells of small regions around that one.",
-    )
+    return _TEXTS.proof("criterion_4", determinant_of_all_steps=determinant_of_all_steps(stray))
 
 
 def determinant_of_all_steps(stray: Fraction = Fraction(0)) -> list[Step]:
     """Show that 1 + Λ is the determinant of the map of all steps."""
-    return [
-        step(
-            "The map of N steps is Φ∘…∘Φ, whose Jacobian at `z_0` is the product of the J at `z_0` "
-            "… `z_{N−1}`, by the chain rule.",
-            CHAIN,
-        ),
-        step(
-            "Its determinant is the product of theirs: ``Π_{k} det J_k = 1 + Λ(z_0)``.",
-            product_of_determinants(),
-            _composition(2, stray),
-        ),
-    ]
+    return _TEXTS.steps(
+        "determinant_of_all_steps",
+        product_of_determinants=product_of_determinants(),
+        composition=_composition(2, stray),
+    )
 
 
 def _composition(steps: int, stray: Fraction) -> Check:
-    scheme = duffing_step()
+    scheme = examples.duffing_step()
     # The composition is differentiated as a whole; the chain rule is what is tested.
-    entries = [sympy.diff(x, z) for x in run_symbolically(scheme, (P, Q), steps) for z in (P, Q)]
-    a, b, c, d = (value(x, _START, _H) for x in entries)
-    det, lam = a * d - b * c + stray, areas(scheme, _START, _H, steps).lam
+    entries = [
+        sympy.diff(x, z) for x in exact_maps.run_symbolically(scheme, (P, Q), steps) for z in (P, Q)
+    ]
+    a, b, c, d = (exact_maps.value(x, _START, _H) for x in entries)
+    det, lam = a * d - b * c + stray, exact_maps.areas(scheme, _START, _H, steps).lam
     return Check(
         f"Duffing, δ = 1, lie2, h = {text(_H)}, (p, q) = {_START}: the determinant of {steps} "
         "steps, composed and then differentiated, and 1 + Λ",
@@ -182,24 +105,19 @@ def _composition(steps: int, stray: Fraction) -> Check:
 
 def smaller_lambda() -> Argument:
     """Prove that |Λ| is the relative change of areas after all steps."""
-    return proof(
-        "after all N steps a small region’s area has changed by |Λ| of it, by the chain rule, so "
-        "the smaller |Λ|, the less",
-        [
-            *determinant_of_all_steps(),
-            step(
-                "So a small region of area A around `z_0` ends with the area ``A (1 + Λ) + o(A)``."
-            ),
-        ],
-    )
+    return _TEXTS.proof("smaller_lambda", determinant_of_all_steps=determinant_of_all_steps())
 
 
 def smaller_lambda_each_step(
-    to_and_fro: ExampleMap = TO_AND_FRO, friction: ExampleMap = FRICTION
+    to_and_fro: examples.ExampleMap = examples.TO_AND_FRO,
+    friction: examples.ExampleMap = examples.FRICTION,
 ) -> Argument:
     """Refute that a smaller |Λ| means smaller changes of area in every step."""
-    pairs = [(one.run(n), other.run(n)) for n in to_and_fro.steps
-            for one, other in [(to_and_fro, friction)]]  # fmt: skip
+    pairs = [
+        (one.run(n), other.run(n))
+        for n in to_and_fro.steps
+        for one, other in [(to_and_fro, friction)]
+    ]
     worse = [
         abs(a.lam) < abs(b.lam) and min(map(abs, a.delta_j)) > b.largest and a.mse > b.mse
         for a, b in pairs
@@ -211,27 +129,11 @@ def smaller_lambda_each_step(
         "exactly",
         NUMBERS,
     )
-    return refutation(
-        "a Λ may be small because changes cancel: p' = −p (1 − √h q)/(1 + √h q), q' = −q has Λ = "
-        "0 and changes areas more in every single step than p' = p − h(q + p), q' = q + hp, whose "
-        "|Λ| tends to 1 − 1/e",
-        [
-            step(
-                "p' = −p (1 − √h q)/(1 + √h q), q' = −q shrinks areas by a factor (1 − √h)/(1 + "
-                "√h) and blows them up by its reciprocal in turn, so Λ = 0 for even N.",
-                to_and_fro.changes(),
-                to_and_fro.check(),
-            ),
-            step(
-                "p' = p − h(q + p), q' = q + hp shrinks them by h − h² in each step.",
-                friction.changes(),
-                friction.check(),
-            ),
-            step(
-                "By criteria 2 and 3 the one is the worse, by criterion 4 the better; here for "
-                "three N.",
-                compared,
-            ),
-        ],
-        setting="Λ is a number at the end.",
+    return _TEXTS.refutation(
+        "smaller_lambda_each_step",
+        to_and_fro_changes=to_and_fro.changes(),
+        to_and_fro_check=to_and_fro.check(),
+        friction_changes=friction.changes(),
+        friction_check=friction.check(),
+        compared=compared,
     )

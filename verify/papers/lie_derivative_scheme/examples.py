@@ -243,10 +243,7 @@ TO_AND_FRO = ExampleMap(
     "-2*sqrt(h)*q/(1 + sqrt(h)*q)",
 )
 TO_AND_FRO_ODD = replace(
-    TO_AND_FRO,
-    name="to and fro, odd N",
-    steps=(9, 25, 81),
-    says="Λ = −2√h/(1 + √h) → 0 for odd N",
+    TO_AND_FRO, name="to and fro, odd N", steps=(9, 25, 81), says="Λ = −2√h/(1 + √h) → 0 for odd N"
 )
 COMPENSATED = ExampleMap(
     "near the identity, compensated",

@@ -4,13 +4,8 @@ Notation: w = ∇H = (H_p, H_q), D = det Hess H, N = −X²z, the negative of th
 the plane N = adj(Hess H) w, and J = 1 + hA − (h²/2) N' with A = (−H_q, H_p)'.
 """
 
+from verify.papers import differential_polynomials
 from verify.papers.argument import Check, vanishes
-from verify.papers.differential_polynomials import (
-    Differential,
-    DifferentialFlow,
-    flow_of_every_hamiltonian,
-    flow_of_one_function,
-)
 
 LINEAR = ("a*p + b*q", "c*p + d*q")  # H = F(u) + rest
 PARABOLIC = ("a*p + b*q + (c*p + d*q)**2/2", "0")
@@ -19,7 +14,7 @@ _CONSTANTS = ("a", "b", "c", "d")
 
 def family(name: str, u: str, rest: str) -> Check:
     """Check that ΔJ of lie2 is zero for H = F(u) + rest, for a generic F and all constants."""
-    flow = flow_of_one_function(_CONSTANTS, u, rest)
+    flow = differential_polynomials.flow_of_one_function(_CONSTANTS, u, rest)
     return vanishes(f"ΔJ of lie2 for {name}, F generic", *flow.delta_j_gaps(2))
 
 
@@ -38,7 +33,7 @@ def moves_by_a_constant(rest: str = LINEAR[1]) -> Check:
 
     ℓ and m are linear; `rest` stands for m.
     """
-    flow = flow_of_one_function(_CONSTANTS, LINEAR[0], rest)
+    flow = differential_polynomials.flow_of_one_function(_CONSTANTS, LINEAR[0], rest)
     names = (*_CONSTANTS, "p", "q", "F1", "F2")
     a, b, c, d, p, q, f1, f2 = (flow.ring[name] for name in names)
     # Xℓ for linear ℓ and m: the motion crosses the lines ℓ = constant at a constant speed.
@@ -57,7 +52,7 @@ def moves_by_a_constant(rest: str = LINEAR[1]) -> Check:
 def exact_flow() -> Check:
     """Check that lie2 is the flow itself where X³z = 0."""
     # F needs one derivative more than for ΔJ, as X³ takes three.
-    flow = flow_of_one_function(_CONSTANTS, *PARABOLIC, 5)
+    flow = differential_polynomials.flow_of_one_function(_CONSTANTS, *PARABOLIC, 5)
     third = [flow.lie_derivatives(z, 3)[3] for z in ("p", "q")]
     return vanishes("X³p and X³q for H = F(ap + bq + (cp + dq)²/2): lie2 is its exact flow", *third)
 
@@ -65,17 +60,15 @@ def exact_flow() -> Check:
 def separable() -> Check:
     """Check ΔJ of lie2 for H = T(p) + V(q), T and V generic; T1 stands for T', and so on."""
     names = [f"{f}{k}" for f in "TV" for k in range(1, 5)]
-    ring = Differential(["h", "p", "q", *names])
+    ring = differential_polynomials.Differential(["h", "p", "q", *names])
     ring.set_coordinates()
     # T4 and V4 have no gradients: ΔJ of lie2 needs no derivatives beyond them.
     for k in range(1, 4):
         ring.set_gradient(f"T{k}", p=ring[f"T{k + 1}"], q=ring.zero)
         ring.set_gradient(f"V{k}", p=ring.zero, q=ring[f"V{k + 1}"])
     t1, t2, t3, v1, v2, v3 = (ring[f"{f}{k}"] for f in "TV" for k in (1, 2, 3))
-    gaps = DifferentialFlow(ring, t1, v1).delta_j_gaps(
-        2,
-        h3=(t1 * t2 * v3 - v1 * v2 * t3) / 2,
-        h4=(t2**2 * v2**2 - t1 * t3 * v1 * v3) / 4,
+    gaps = differential_polynomials.DifferentialFlow(ring, t1, v1).delta_j_gaps(
+        2, h3=(t1 * t2 * v3 - v1 * v2 * t3) / 2, h4=(t2**2 * v2**2 - t1 * t3 * v1 * v3) / 4
     )
     return vanishes(
         "H = T(p) + V(q): ΔJ = (h³/2)(T'T''V''' − V'V''T''') + (h⁴/4)(T''²V''² − T'T'''V'V''')",
@@ -85,7 +78,7 @@ def separable() -> Check:
 
 def equilibrium() -> Check:
     """Check that ΔJ of lie2 is h⁴D²/4 at a critical point of a generic H."""
-    flow = flow_of_every_hamiltonian(4)
+    flow = differential_polynomials.flow_of_every_hamiltonian(4)
     # At an equilibrium the gradient of H vanishes, and the derivatives beyond it stay free.
     rest_point: dict[str | int, int] = {"H1_0": 0, "H0_1": 0}
     gaps = [x.subs(rest_point) for x in flow.delta_j_gaps(2, h4=flow.hessian_determinant**2 / 4)]
@@ -97,7 +90,7 @@ def coefficients() -> Check:
 
     T_ij = Σ_k ∂_j adj(Hess H)_ik w_k, w = ∇H.
     """
-    flow = flow_of_every_hamiltonian(4)
+    flow = differential_polynomials.flow_of_every_hamiltonian(4)
     ring, w = flow.ring, (flow.h_p, flow.h_q)
     pp, pq, qq = flow.hessian
     adjugate = ((qq, -pq), (-pq, pp))
@@ -115,7 +108,7 @@ def coefficients() -> Check:
 
 def acceleration() -> Check:
     """Check −X²z = adj(Hess H) ∇H, and div N = 2 D, for a generic H."""
-    flow = flow_of_every_hamiltonian(4)
+    flow = differential_polynomials.flow_of_every_hamiltonian(4)
     pp, pq, qq = flow.hessian
     n_p, n_q = (-flow.lie_derivatives(z, 2)[2] for z in ("p", "q"))
     return vanishes(
@@ -128,7 +121,7 @@ def acceleration() -> Check:
 
 def by_acceleration(half: int = 4) -> Check:
     """Check that the coefficient of h⁴ in ΔJ is det N'/4, N = −X²z; `half` is that 4."""
-    flow = flow_of_every_hamiltonian(4)
+    flow = differential_polynomials.flow_of_every_hamiltonian(4)
     ring = flow.ring
     n_p, n_q = (-flow.lie_derivatives(z, 2)[2] for z in ("p", "q"))
     return vanishes(
@@ -139,7 +132,7 @@ def by_acceleration(half: int = 4) -> Check:
 
 def twice(factor: int = 2) -> Check:
     """Check that λT'' = cT'² and T''' = cT'T'' give λT''' = 2T'''; `factor` is that 2."""
-    ring = Differential(["p", "T1", "T2", "c", "lambda"])
+    ring = differential_polynomials.Differential(["p", "T1", "T2", "c", "lambda"])
     t1, t2, c, constant = (ring[name] for name in ring.names[1:])
     third = c * t1 * t2
     ring.set_gradient("T1", p=t2)

@@ -7,11 +7,12 @@ import sympy
 from verify.algebra.formula import symbol
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, Check, proof, refutation, same, step, vanishes
+from verify.papers.argument import Argument, ArgumentTexts, Check, same, vanishes
 from verify.papers.differential_polynomials import DifferentialFlow, Poly, flow_of_every_hamiltonian
 from verify.papers.lie_derivative_scheme.examples import SYSTEMS, with_symbols
-from verify.proof.assistant.shipped_theory import ShippedTheorem
 from verify.schemes.methods.taylor.lie import lie_map
+
+_TEXTS = ArgumentTexts(__file__)
 
 MOST = 5  # powers of X looked at for a generic H; the rest is by induction
 Recursion = Callable[[DifferentialFlow, Poly], Poly]
@@ -46,38 +47,12 @@ def lie_exponential(recursion: Recursion = eq_4, eta: int = 4) -> Argument:
         hamiltonian = with_symbols(name)
         for order in range(1, eta + 1):
             for_systems.append(_same(name, hamiltonian, order))
-    return proof(
-        "with L p = −`H_q` and L q = `H_p` to start from, Eq. 4 and 5 say Lⁿ = X Lⁿ⁻¹, so that Eq. "
-        f"2 is exp(hX) cut off after `h^η`; checked for a generic H up to `X^{MOST}`",
-        [
-            step(
-                "By Eq. 5 the two operators are `L_{H_p}` = `H_p` `∂_q` and `L_{−H_q}` = −`H_q` "
-                "`∂_p`. Their sum is the derivative along the motion: ``X = H_p ∂_q − H_q ∂_p``.",
-                _operators(recursion),
-            ),
-            step(
-                "Eq. 4 applies this sum in both of its lines, Lⁿ = X Lⁿ⁻¹, from L¹ = `H_p` = X q "
-                "in the line of q and from L¹ = −`H_q` = X p in that of p. So, for every n ≥ 1, "
-                "``L^n_{H_p} = X^n q, L^n_{−H_q} = X^n p``.",
-                _operators(recursion),
-                *powers,
-            ),
-            step(
-                "Along a solution ``d/dt y(z(t)) = (Xy)(z(t))``, so that Xⁿp and Xⁿq are the n-th "
-                "time derivatives of p and q.",
-                ShippedTheorem("Solutions", "rate_along_solution"),
-                ShippedTheorem("Solutions", "derivatives_along_solution"),
-            ),
-            step(
-                "Hence Eq. 2 is the Taylor polynomial of degree η of the exact flow, exp(hX) "
-                "applied to the two coordinates and cut off: ``z_{k+1} = Σ_{n=0}^{η} h^n/n! X^n "
-                "z``.",
-                ShippedTheorem("Theorems", "flow_has_taylor_series"),
-                *for_systems,
-            ),
-        ],
-        remark="Nothing in this uses that H is separable. (`Lⁿ_{H_p}` is not the n-th power of the "
-        "operator `L_{H_p}` of Eq. 5, although it is written so: Eq. 4 mixes the two operators.)",
+    return _TEXTS.proof(
+        "lie_exponential",
+        operators=_operators(recursion),
+        powers=powers,
+        for_systems=for_systems,
+        most=str(MOST),
     )
 
 
@@ -131,33 +106,13 @@ def eq_3(coordinate: str = "p") -> Argument:
         by_eq_5 != h_p,
         f"`{by_eq_5}`",
     )
-    return refutation(
-        "p and q are independent coordinates, so ∂q/∂p = 0 and the right side is 0, not `H_p`; "
-        "with q for p, `L_{H_p}`(`q_k`) = `H_p` ∂q/∂q = `H_p`, it is what Eq. 2 needs",
-        [
-            step(
-                "In Eq. 3 p and q are the independent coordinates of the phase plane, so ∂q/∂p = 0 "
-                "and ``H_p ∂q/∂p = 0``.",
-                as_printed,
-            ),
-            step("By Eq. 5, too, ``L_{H_p}(p) = H_p ∂p/∂q = 0``.", operator),
-            step(
-                "So the printed equality holds only where `H_p` = 0, and not everywhere.",
-                _example(),
-            ),
-            step(
-                "Taken at its word it would give `L_{H_p}` = 0, and with Eq. 4 Lⁿ = 0 and with Eq. "
-                "2 `q_{k+1}` = `q_k`: no scheme for Eq. 1.",
-                vanishes("Eq. 4 from L¹ = 0", eq_4(flow, ring.zero)),
-            ),
-            step(
-                "What is meant is ``L_{H_p}(q_k) = H_p ∂q/∂q = H_p``, and the second line, "
-                "`L_{−H_q}`(`p_k`) = −`H_q` ∂p/∂p = −`H_q`, is right.",
-                _holds_as_meant(flow, "q"),
-            ),
-        ],
-        remark="So read, Eq. 2–5 are consistent with each other and with Eq. 19 and 27, and "
-        "nothing that follows in the paper is affected.",
+    return _TEXTS.refutation(
+        "eq_3",
+        as_printed=as_printed,
+        operator=operator,
+        example=_example(),
+        vanishes=vanishes("Eq. 4 from L¹ = 0", eq_4(flow, ring.zero)),
+        holds_as_meant=_holds_as_meant(flow, "q"),
     )
 
 
@@ -187,21 +142,11 @@ def _example() -> Check:
 def eq_3_meant(coordinate: str = "q") -> Argument:
     """Prove Eq. 3 with q for p in its first line: L_{H_p}(q) = H_p, L_{−H_q}(p) = −H_q."""
     hamiltonians = [with_symbols(name) for name in SYSTEMS]
-    return proof(
-        "`L_{H_p}`(`q_k`) = `H_p` ∂q/∂q = `H_p` and `L_{−H_q}`(`p_k`) = −`H_q` ∂p/∂p = −`H_q` are "
-        "Eq. 5 for y = q and y = p, and what Eq. 2 begins with",
-        [
-            step(
-                "By Eq. 5 `L_{H_p}`(y) = `H_p` ∂y/∂q and `L_{−H_q}`(y) = −`H_q` ∂y/∂p. With y = q "
-                "and with y = p these are ``L_{H_p}(q) = H_p, L_{−H_q}(p) = −H_q``.",
-                _holds_as_meant(flow_of_every_hamiltonian(2), coordinate),
-            ),
-            step(
-                "They are the first terms of Eq. 2, by which Eq. 19 and 27 are right.",
-                *(
-                    _same(name, hamiltonian, 2)
-                    for name, hamiltonian in zip(SYSTEMS, hamiltonians, strict=True)
-                ),
-            ),
+    return _TEXTS.proof(
+        "eq_3_meant",
+        holds_as_meant=_holds_as_meant(flow_of_every_hamiltonian(2), coordinate),
+        same=[
+            _same(name, hamiltonian, 2)
+            for name, hamiltonian in zip(SYSTEMS, hamiltonians, strict=True)
         ],
     )

@@ -9,20 +9,12 @@ import sympy
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import decimal, text
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import (
-    BALLS,
-    NUMBERS,
-    Argument,
-    Check,
-    proof,
-    refutation,
-    same,
-    step,
-    vanishes,
-)
+from verify.papers.argument import BALLS, NUMBERS, Argument, ArgumentTexts, Check, same, vanishes
 from verify.papers.differential_polynomials import flow_of_every_hamiltonian
 from verify.papers.exact_maps import RationalPoint, jacobian, next_point, squared_distance
 from verify.papers.lie_derivative_scheme.examples import duffing_step, enclosures, errors, factor
+
+_TEXTS = ArgumentTexts(__file__)
 
 PAIR = (RationalPoint(p=Fraction(0), q=Fraction(0)), RationalPoint(p=Fraction(0), q=Fraction(1)))
 STEP_SIZES = (Fraction(1, 10), Fraction(1, 100), Fraction(1, 1000))
@@ -53,49 +45,16 @@ def eq_9(pair: tuple[RationalPoint, RationalPoint] = PAIR, mixed: str = MIXED) -
         [images_of_p[0] - images_of_p[1] - 2 * H_STEP],
         ("h",),
     )
-    return refutation(
-        f"for the Duffing oscillator (δ = 1, h = 0.1) two points with the same p, with q = "
-        f"{text(pair[0].q)} and q = {text(pair[1].q)}, have |p̃ − p| = {text(left)} after one step, "
-        "where the right side is 0 for every `L_p`; for p alone and for q alone Eq. 9 holds, for "
-        "all small h, only where `H_pp` = 0 and `H_qq` = 0",
-        [
-            step(
-                "Take two points with the same p and different q: the right side is 0 whatever "
-                "`L_p` is. For the Duffing oscillator with δ = 1 and lie2, from (p, q) = (0, 0) "
-                "and (0, 1), the left side is ``|p'(0, 0) − p'(0, 1)| = 2h``.",
-                differs,
-                for_every_h,
-            ),
-            step(
-                "For a general H: if Eq. 9 holds for all pairs of points of a rectangle and for "
-                "all small h, with whatever constants, then p' does not depend on q there, and q' "
-                "not on p. The coefficients of h in p' and q' are −`H_q` and `H_p`.",
-                _first_terms(),
-            ),
-            step("So ``H_{qq} = 0, H_{pp} = 0``, and H = a pq + b p + c q + d."),
-            step(
-                "For such an H both components decouple, for every η.",
-                _decoupling(mixed),
-            ),
-            step("There Eq. 9 holds for h ≤ h₀ with ``L_p = L_q = (e^(|a|h_0) − 1)/h_0``."),
-            step(
-                "It is no way out that `z̄_k` and `z_k` belong to an exact solution and to the run "
-                "that starts on it. For the oscillator H = (p² + q²)/2 from (q, p) = (1, 0) the "
-                "error of lie2 at time t is, in (q, p), ``(t h^2/6)(sin t, cos t) + O(h^3)``: it "
-                "turns with the solution, by an angle h in a step.",
-            ),
-            step(
-                "In the step after its p-component has changed sign near t = π/2 that component "
-                "grows by a factor of 2 − O(h) at least, so that `L_p` ≥ (1 − O(h))/h: no constant "
-                "will do, neither with `p̄_k` on the right, which Eq. 8 and 10 need, nor with "
-                "`p̃_k` as printed.",
-                tried=[along_a_run(size) for size in STEP_SIZES],
-            ),
-        ],
-        setting="The right side has the p-difference alone, while `p_{k+1}` depends on `q_k`, too.",
-        remark="What holds is the inequality in a norm of the plane: |Φ(z̄) − Φ(z)| ≤ (1 + hL) |z̄ "
-        "− z|, or by components |`p̃_{k+1}` − `p_{k+1}`| ≤ (1 + hL) |`p̄_k` − `p_k`| + hL |`q̄_k` "
-        "− `q_k`|; with either, the conclusion of Section 2.2 stands.",
+    return _TEXTS.refutation(
+        "eq_9",
+        differs=differs,
+        for_every_h=for_every_h,
+        first_terms=_first_terms(),
+        decoupling=_decoupling(mixed),
+        along_a_run=[along_a_run(size) for size in STEP_SIZES],
+        first_q=text(pair[0].q),
+        second_q=text(pair[1].q),
+        left=text(left),
     )
 
 
@@ -152,26 +111,7 @@ def _largest(left: Sequence[flint.arb], right: Sequence[flint.arb], scale: float
 
 def eq_9_plane(norm: float = 1.0) -> Argument:
     """Prove Eq. 9 for both components in one norm; `norm` scales L, as a control."""
-    return proof(
-        "repaired, with `z̄_k` for `z̃_k` and both components together, it holds: |Φ(`z̄_k`) − "
-        "Φ(`z_k`)| ≤ (1 + hL) |`z̄_k` − `z_k`|, with L the greatest norm of ψ', Φ = z + hψ, on a "
-        "convex compact set around the solution: one L for all 0 < h ≤ h₀",
-        [
-            step(
-                "Φ(z) = z + hψ(z, h) with ``ψ = Σ_{n=1}^{η} h^(n−1)/n! X^n z``, of class C¹ in z, "
-                "continuous in h up to 0. So the norm of ψ' has a maximum L over K and 0 ≤ h ≤ h₀.",
-            ),
-            step(
-                "By the mean value theorem along the segment from z to z̄ "
-                "``|Φ(z̄) − Φ(z)| ≤ (1 + hL) |z̄ − z|``.",
-                tried=[_stretch(h, norm) for h in STEP_SIZES],
-            ),
-        ],
-        setting="Let H be of class `C^(η+1)` near the solution and K a convex compact set in which "
-        "that holds.",
-        remark="For η = 1, “the first-order truncated”, ψ = f, and L is the greatest norm of f'. "
-        "Eq. 9 prints `p̃_k` on the right; Eq. 8 and 10 need `p̄_k`, as here.",
-    )
+    return _TEXTS.proof("eq_9_plane", stretch=[_stretch(h, norm) for h in STEP_SIZES])
 
 
 def _stretch(h: Fraction, norm: float) -> Check:
@@ -203,24 +143,8 @@ def _stretch(h: Fraction, norm: float) -> Check:
 
 def convergence_inference() -> Argument:
     """Refute that convergence follows from Eq. 9–11 as they are printed."""
-    return refutation(
-        "the printed argument goes through Eq. 9 with the p-difference alone on the right, for "
-        "which no constant `L_p` will do along a run of the oscillator: it takes an `L_p` above "
-        "1/h, with which the bound of Eq. 11 does not tend to 0; with both components together the "
-        "same steps prove it",
-        [
-            step(
-                "Eq. 9 with one component on its right side asks for an `L_p` above 1/h along the "
-                "run of lie2 for H = (p² + q²)/2 from (q, p) = (1, 0), for h = "
-                f"{', '.join(map(text, STEP_SIZES))}.",
-                *(along_a_run(size) for size in STEP_SIZES),
-            ),
-            step(
-                "So it is for every small h, and the factor of Eq. 11 is ``(1 + hL_p)^k > 2^k``: "
-                "C̃ does not stay bounded as h → 0, and nothing follows of the error. (See the "
-                "claim on Eq. 9.)",
-            ),
-        ],
-        setting="Eq. 11 is summed from Eq. 10, and that from Eq. 9.",
-        remark="The conclusion is true, by the same steps for both components in one norm.",
+    return _TEXTS.refutation(
+        "convergence_inference",
+        along_a_run=[along_a_run(size) for size in STEP_SIZES],
+        step_sizes=", ".join(map(text, STEP_SIZES)),
     )

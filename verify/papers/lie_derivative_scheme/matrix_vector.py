@@ -7,17 +7,14 @@ import sympy
 from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import decimal, text
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import NUMBERS, Argument, Check, proof, refutation, same, step, vanishes
-from verify.papers.differential_polynomials import (
-    Differential,
-    DifferentialFlow,
-    flow_of_every_hamiltonian,
-)
+from verify.papers import differential_polynomials
+from verify.papers.argument import NUMBERS, Argument, ArgumentTexts, Check, same, vanishes
 from verify.papers.exact_maps import RationalPoint, areas, jacobian, map_from_texts, next_point
 from verify.papers.lie_derivative_scheme.examples import duffing, duffing_step
-from verify.proof.assistant.shipped_theory import ShippedTheorem
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
+
+_TEXTS = ArgumentTexts(__file__)
 
 H = Fraction(1, 10)
 POINT = RationalPoint(p=Fraction(0), q=Fraction(1))
@@ -33,37 +30,16 @@ def eq_12(hamiltonian: Hamiltonian | None = None, point: RationalPoint = POINT) 
         f"{product} against {image}",
         NUMBERS,
     )
-    return refutation(
-        f"for the Duffing oscillator (δ = 1, h = {text(H)}) at (p, q) = {point}, J z = {product} "
-        f"but z' = {image}; it holds for all h only where H is quadratic",
-        [
-            step(
-                f"For the Duffing oscillator (δ = 1, h = {text(H)}) at (p, q) = {point} J z = "
-                f"{product} and z' = {image}: Eq. 12 is false as a product of a matrix and a "
-                "vector.",
-                at_a_point,
-            ),
-            step(
-                "Of which H is it true? That J(z) z = Φ(z) for all z means that Φ is homogeneous "
-                "of degree 1 (Euler): ``d/ds Φ(sz)/s = (J(sz) sz − Φ(sz))/s^2 = 0``.",
-                euler(),
-            ),
-            step(
-                "If it holds for all small h on a disc around the origin, then the coefficient f "
-                "of h in Φ(z) = z + hf(z) + … is homogeneous of degree 1 too. It is differentiable "
-                "at the origin, so ``f(z) = lim_{s→0} f(sz)/s = f'(0) z``, and H is a quadratic "
-                "form plus a constant.",
-            ),
-            step(
-                "Conversely, for a quadratic form every Xⁿz is linear, and Eq. 12 is an identity.",
-                stays_linear(),
-                _check_quadratic_form(),
-            ),
-        ],
-        remark="So Eq. 12 is false as a product for every other H that is smooth around the "
-        "origin, the Duffing oscillator with δ ≠ 0 and the pendulum among them. What holds is its "
-        "tangent form, `δz_{k+1}` = `J_k` `δz_k` for infinitesimal differences, and that is all "
-        "that Eq. 13–16 use: they need det `J_k` only.",
+    return _TEXTS.refutation(
+        "eq_12",
+        at_a_point=at_a_point,
+        euler=euler(),
+        stays_linear=stays_linear(),
+        check_quadratic_form=_check_quadratic_form(),
+        h=text(H),
+        point=str(point),
+        product=str(product),
+        image=str(image),
     )
 
 
@@ -97,25 +73,7 @@ def eq_12_tangent(stray: Fraction = Fraction(0)) -> Argument:
         texts,
         NUMBERS,
     )
-    return proof(
-        "`δz_{k+1}` = `J_k` `δz_k` for infinitesimal differences is what a Jacobian matrix is, for "
-        "every scheme that is differentiable; Eq. 13–16 use no more",
-        [
-            step(
-                "That Φ is differentiable at `z_k` says ``Φ(z_k + δz) = Φ(z_k) + J_k δz + "
-                "o(|δz|)``, and a smooth function is, with its derivatives as the entries of "
-                "`J_k`; so is every lieη of a smooth H.",
-                ShippedTheorem("Smooth", "derivation_has_slopes"),
-            ),
-            step(
-                "Where Φ has second derivatives the rest is O(|δz|²) (Taylor).",
-                tried=[example],
-            ),
-        ],
-        remark="The next sentence of the paper calls `J_k` a tool for representing local linear "
-        "transformations, and all that follows is made of det `J_k`; nothing needs Eq. 12 as a "
-        "product of `J_k` and `z_k` itself.",
-    )
+    return _TEXTS.proof("eq_12_tangent", example=example)
 
 
 def _gap(step_map: StepMap, v: RationalPoint, s: Fraction, stray: Fraction) -> Fraction:
@@ -129,7 +87,7 @@ def _gap(step_map: StepMap, v: RationalPoint, s: Fraction, stray: Fraction) -> F
 
 def near_identity(start: int = 0) -> Argument:
     """Prove that Φ and J of lieη tend to the identity; `start`: the least power of h counted."""
-    flow = flow_of_every_hamiltonian(4)
+    flow = differential_polynomials.flow_of_every_hamiltonian(4)
     ring, at_0 = flow.ring, [flow.ring.zero, flow.ring.zero]
     for i, image in enumerate(flow.lie(3)):
         at_0[i] = ring.powers(image, "h").get(start, ring.zero)
@@ -138,25 +96,7 @@ def near_identity(start: int = 0) -> Argument:
         at_0[0] - ring["p"],
         at_0[1] - ring["q"],
     )
-    return proof(
-        "by Eq. 2 the step is z + h f(z) + O(h²), which tends to z as h → 0, and its Jacobian to "
-        "the unit matrix, uniformly on compact sets",
-        [
-            step(
-                "Eq. 2 is a polynomial in h whose term without h is z: "
-                "``Φ(z) = z + Σ_{n=1}^{η} h^n/n! X^n z``.",
-                without_h,
-            ),
-            step(
-                "For a smooth H its coefficients and their derivatives are bounded on compact "
-                "sets, so Φ → id and J → 1 uniformly there.",
-            ),
-            step(
-                "It follows that ΔJ → 0, too: it is ``h^(η+1)`` times a polynomial in h.",
-                ShippedTheorem("Theorems", "determinant_of_lie_in_plane"),
-            ),
-        ],
-    )
+    return _TEXTS.proof("near_identity", without_h=without_h)
 
 
 def near_identity_inference(p_next: str = "-q", q_next: str = "p") -> Argument:
@@ -184,28 +124,20 @@ def near_identity_inference(p_next: str = "-q", q_next: str = "p") -> Argument:
         ", ".join(map(str, images)),
         NUMBERS,
     )
-    return refutation(
-        f"ΔJ → 0 alone does not give it: p' = `{p_next}`, q' = `{q_next}` has ΔJ ≡ 0 for all h and "
-        "is not near the identity; the scheme is near-identity because Eq. 2 is z + O(h)",
-        [
-            step(
-                "The rotation by a right angle, p' = −q, q' = p, has det J = 1 for every h.",
-                for_every_h,
-                along_a_run,
-            ),
-            step("It moves (0, 1) to (−1, 0), for every h.", moves),
-        ],
-        remark="A determinant near 1 says that areas are nearly kept, not that points are. The "
-        "conclusion is true of lieη for another reason: by Eq. 2 Φ(z) = z + hf(z) + O(h²), which "
-        "tends to z as h → 0, and J to the unit matrix. From that ΔJ → 0 follows, and not the "
-        "other way round.",
+    return _TEXTS.refutation(
+        "near_identity_inference",
+        for_every_h=for_every_h,
+        along_a_run=along_a_run,
+        moves=moves,
+        p_next=p_next,
+        q_next=q_next,
     )
 
 
 def euler(power: int = 2) -> Check:
     """Check d/ds [Φ(sz)/s] = [J(sz) sz − Φ(sz)]/s² for a generic Φ; `power` stands for the 2."""
     names = ["u", "s", "F", "F_p", "F_q", "p", "q"]
-    ring = Differential(names)
+    ring = differential_polynomials.Differential(names)
     u, s, f, f_p, f_q, p, q = (ring[name] for name in names)
     # u = 1/s is a variable with a relation, as the ring has no negative powers.
     ring.relate(u * s - 1)  # u = 1/s
@@ -222,10 +154,10 @@ def euler(power: int = 2) -> Check:
 def stays_linear(bent: int = 0) -> Check:
     """Check that X y is linear if y is, for a quadratic form H; `bent` p² is added to y."""
     names = ["p", "q", "a", "b", "c", "alpha", "beta"]
-    ring = Differential(names)
+    ring = differential_polynomials.Differential(names)
     p, q, a, b, c, alpha, beta = (ring[name] for name in names)
     ring.set_coordinates()
-    flow = DifferentialFlow(ring, a * p + b * q, b * p + c * q)
+    flow = differential_polynomials.DifferentialFlow(ring, a * p + b * q, b * p + c * q)
     # f = (−H_q, H_p) is linear for a quadratic H, and a derivative along it keeps the degree.
     derivative = flow.derive(alpha * p + beta * q + bent * p * p)
     linear = (a * beta - b * alpha) * p + (b * beta - c * alpha) * q

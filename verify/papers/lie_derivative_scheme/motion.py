@@ -7,9 +7,11 @@ import sympy
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import parse
 from verify.algebra.symbols import P, Q
-from verify.papers.argument import Argument, proof, same, step, vanishes
+from verify.papers.argument import Argument, ArgumentTexts, same, vanishes
 from verify.papers.differential_polynomials import flow_of_every_hamiltonian
 from verify.proof.assistant.shipped_theory import ShippedTheorem
+
+_TEXTS = ArgumentTexts(__file__)
 
 DUFFING = ("p**2/2 + q**2/2 + delta*q**4/4", "q + delta*q**3")  # H, and q'' less its sign
 PENDULUM = ("p**2/2 - cos(q)", "sin(q)")
@@ -22,33 +24,9 @@ def eq_1(sign: int = -1) -> Argument:
     diff, h_p, h_q = flow.ring.diff, flow.h_p, flow.h_q
     rate = vanishes("dH/dt = `H_p` p' + `H_q` q' for a generic H", sign * h_q * h_p + h_p * h_q)
     divergence = vanishes(
-        "the divergence ∂p'/∂p + ∂q'/∂q for a generic H",
-        sign * diff(h_q, "p") + diff(h_p, "q"),
+        "the divergence ∂p'/∂p + ∂q'/∂q for a generic H", sign * diff(h_q, "p") + diff(h_p, "q")
     )
-    return proof(
-        "along solutions of Eq. 1 dH/dt = −`H_q` `H_p` + `H_p` `H_q` = 0 for every H, and the flow "
-        "has no divergence",
-        [
-            step(
-                "With p' = −`H_q`, q' = `H_p` the chain rule gives ``dH/dt = H_p p' + H_q q' = "
-                "−H_p H_q + H_q H_p = 0``, so the system is conservative and H an invariant.",
-                rate,
-                ShippedTheorem("Solutions", "rate_along_solution"),
-            ),
-            step(
-                "Its divergence is ``−H_{qp} + H_{pq} = 0``.",
-                divergence,
-                ShippedTheorem("Volume", "field_without_divergence"),
-            ),
-            step(
-                "So every term in h, h², … of det φ', φ the Taylor series of the exact flow over "
-                "h, vanishes: it preserves area (Liouville).",
-                ShippedTheorem("Taylor", "flow_has_no_defect"),
-            ),
-        ],
-        remark="On the level curves of H the exact flow can be drawn. None of it needs that H is "
-        "separable.",
-    )
+    return _TEXTS.proof("eq_1", rate=rate, divergence=divergence)
 
 
 def _from_hamiltonian(
@@ -64,18 +42,14 @@ def _from_hamiltonian(
     whole = same(
         f"q'' by Eq. 1 with H = `{formulas[0]}`, plus `{formulas[1]}`", [second + force], _NAMES
     )
-    return proof(
-        f"H as in {source} gives q' = p and p' = −(`{to_text(force)}`), so that q'' + "
-        f"`{to_text(force)}` = 0{words}",
-        [
-            step("By Eq. 1 ``q' = H_p = p, p' = −H_q``.", first, *theorems),
-            step("So ``q'' = p' = −H_q``, which is the equation.", whole),
-            step(
-                "Conversely let q solve the equation, and call q' p: then q' = `H_p` and p' = q'' "
-                "= −`H_q`, which is Eq. 1 with this H.",
-                first,
-            ),
-        ],
+    return _TEXTS.proof(
+        "_from_hamiltonian",
+        first=first,
+        theorems=theorems,
+        whole=whole,
+        source=source,
+        force=to_text(force),
+        words=words,
     )
 
 

@@ -4,31 +4,16 @@ import sympy
 
 from verify.algebra.symbols import P, Q
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, Check, proof, refutation, step, vanishes
+from verify.papers.argument import Argument, ArgumentTexts, Check, vanishes
 from verify.papers.differential_polynomials import flow_of_every_hamiltonian
 from verify.papers.lie_derivative_scheme.lie_series import eq_4, powers_of
+
+_TEXTS = ArgumentTexts(__file__)
 
 
 def taylor_method() -> Argument:
     """Prove that lieη is the Taylor series method of order η, step for step."""
-    return proof(
-        "for every H a step of lieη is the Taylor polynomial of degree η of the exact flow: the "
-        "Taylor series method of order η, which references 23 to 29 of the paper apply as the Lie "
-        "derivative method",
-        [
-            step(
-                "By Eq. 2, 4 and 5 ``z_{k+1} = Σ_{n=0}^{η} h^n/n! X^n z``, X the derivative along "
-                "the motion (see the claim on Eq. 2, 4 and 5).",
-                *map(powers_of, ("p", "q")),
-            ),
-            step(
-                "This is the definition of the Taylor series method of order η for z' = f(z): Xⁿz "
-                "is the n-th time derivative of the solution.",
-            ),
-        ],
-        remark="The four criteria, and what the paper says of areas, may be new; they are judged "
-        "each by itself. Who was first, a computation cannot say.",
-    )
+    return _TEXTS.proof("taylor_method", powers_of=map(powers_of, ("p", "q")))
 
 
 def partitioned(sign: int = -1) -> Argument:
@@ -37,19 +22,12 @@ def partitioned(sign: int = -1) -> Argument:
     ring = flow.ring
     ring.set_gradient("y", p=ring["y_p"], q=ring["y_q"])
     parts = flow.h_p * ring["y_q"] + sign * flow.h_q * ring["y_p"]
-    return proof(
-        "Eq. 1 is two equations, and the derivative along the motion the sum of one term from "
-        "each, `L_{H_p}` + `L_{−H_q}` = `H_p` ∂/∂q − `H_q` ∂/∂p, for every H",
-        [
-            step(
-                "By the chain rule ``dy/dt = H_p ∂y/∂q − H_q ∂y/∂p`` along Eq. 1, and the two "
-                "terms are Eq. 3 (as meant) and 5.",
-                vanishes(
-                    "`H_p` ∂y/∂q − `H_q` ∂y/∂p less X y, for a generic H and y",
-                    parts - flow.derive(ring["y"]),
-                ),
-            ),
-        ],
+    return _TEXTS.proof(
+        "partitioned",
+        vanishes=vanishes(
+            "`H_p` ∂y/∂q − `H_q` ∂y/∂p less X y, for a generic H and y",
+            parts - flow.derive(ring["y"]),
+        ),
     )
 
 
@@ -59,22 +37,14 @@ def partitioned_separable(formula: str = "p*q + p**2*q**2") -> Argument:
     mixed = sympy.expand(sympy.diff(hamiltonian.exact, P, Q))
     flow = flow_of_every_hamiltonian(2)
     second = flow.lie_derivatives("q", 2)
-    return refutation(
-        "Eq. 3 to 5 hold for every H(p, q), such as `pq + p²q²`, which is no sum of a function of "
-        "p and a function of q",
-        [
-            step(
-                f"H = `{formula}` has ``H_{{pq}} ≠ 0``, so that it is no such sum.",
-                Check(f"H = `{formula}`: `H_pq` is not 0", mixed != 0, f"`{mixed}`"),
-            ),
-            step(
-                "Eq. 4 and 5 are the derivative along the motion for a generic H, so for this one.",
-                vanishes(
-                    "Eq. 4 and 5 from L q = `H_p`, less X² q, for a generic H",
-                    eq_4(flow, second[1]) - second[2],
-                ),
-            ),
-        ],
+    return _TEXTS.refutation(
+        "partitioned_separable",
+        check=Check(f"H = `{formula}`: `H_pq` is not 0", mixed != 0, f"`{mixed}`"),
+        vanishes=vanishes(
+            "Eq. 4 and 5 from L q = `H_p`, less X² q, for a generic H",
+            eq_4(flow, second[1]) - second[2],
+        ),
+        formula=formula,
     )
 
 
@@ -85,11 +55,12 @@ def higher_derivatives() -> Argument:
     gaps = [
         eq_4(flow, y) - flow.lie_derivatives(name, 2)[2] for name, y in first_derivatives.items()
     ]
-    return proof(
-        "`L²` q = L `H_p` and `L²` p = −L `H_q`, and so on: derivatives of functions of p and q",
-        [step("By Eq. 4 ``L^2 q = X H_p, L^2 p = −X H_q``.",
-              vanishes("Eq. 4 from `H_p` and −`H_q`, less X² q and X² p, for a generic H", *gaps))],
-    )  # fmt: skip
+    return _TEXTS.proof(
+        "higher_derivatives",
+        vanishes=vanishes(
+            "Eq. 4 from `H_p` and −`H_q`, less X² q and X² p, for a generic H", *gaps
+        ),
+    )
 
 
 def higher_derivatives_nonlinearity(
@@ -110,13 +81,6 @@ def higher_derivatives_nonlinearity(
         speed == P and sympy.diff(force, Q, Q) != 0,
         f"`{speed}`, `{force}`",
     )
-    return refutation(
-        "the linear system of H = `p²/2 + pq + q²` has L q = p + q, a function, whose derivative "
-        "`L²` q is; and the nonlinear one of H = `p²/2 + q⁴/4` has L q = p, a variable",
-        [
-            step("The system of the first H is linear, and L q = `H_p` is neither p nor q.",
-                 is_linear),
-            step("That of the second is not, and L q = p, so that `L²` q = L p is the derivative "
-                 "of a variable.", is_curved),
-        ],
-    )  # fmt: skip
+    return _TEXTS.refutation(
+        "higher_derivatives_nonlinearity", is_linear=is_linear, is_curved=is_curved
+    )

@@ -10,24 +10,15 @@ import sympy
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.exact import decimal, text
-from verify.papers.argument import (
-    BALLS,
-    NUMBERS,
-    Argument,
-    Check,
-    proof,
-    refutation,
-    same,
-    step,
-    vanishes,
-)
+from verify.papers.argument import BALLS, NUMBERS, Argument, ArgumentTexts, Check, same, vanishes
 from verify.papers.differential_polynomials import flow_of_every_hamiltonian
 from verify.papers.exact_maps import Areas, RationalPoint, areas, map_from_texts, next_point, value
 from verify.papers.lie_derivative_scheme import examples
 from verify.papers.lie_derivative_scheme.convergence import STEPS
 from verify.papers.lie_derivative_scheme.error_measures import mean_of_squares
-from verify.proof.assistant.shipped_theory import ShippedTheorem
 from verify.schemes.methods.taylor.lie import lie_map
+
+_TEXTS = ArgumentTexts(__file__)
 
 EULER = ("p - h*q", "q + h*p - h**2*q")  # symplectic Euler for H = (p² + q²)/2
 UNEVEN = ("-p*(1 + (q + 1/20)/10**11)", "-q")  # its ΔJ is 10⁻¹¹ (q + 1/20), whatever h is
@@ -37,17 +28,7 @@ _POINT_ONE = Fraction(1, 10)
 
 def mse_quantifies() -> Argument:
     """Prove that MSE(J) measures how far the determinants are from 1."""
-    return proof(
-        "√MSE is the root mean square of det `J_k` − 1 over [t₀, `t_end`], and no |det `J_k` − 1| "
-        "exceeds √(N MSE)",
-        [
-            step(
-                "The true value of det `J_k` is 1 and ``MSE = (1/N) Σ_{k} (det J_k − 1)^2``.",
-                mean_of_squares(),
-            ),
-            step("One term of a sum of squares is at most the sum: |det `J_k` − 1|² ≤ N MSE."),
-        ],
-    )
+    return _TEXTS.proof("mse_quantifies", mean_of_squares=mean_of_squares())
 
 
 def mse_quantifies_solution(formulas: Sequence[str] = EULER) -> Argument:
@@ -55,18 +36,12 @@ def mse_quantifies_solution(formulas: Sequence[str] = EULER) -> Argument:
     step_map = map_from_texts(*formulas)
     zero = same("symplectic Euler, H = (p² + q²)/2: ΔJ", [step_map.delta_j], ("p", "q", "h"))
     errors = [_error_at_1(formulas, n) for n in STEPS]
-    return refutation(
-        "symplectic Euler has det `J_k` = 1 and MSE = 0 whatever h is, while its solution is off "
-        f"by {', '.join(error.value for error in errors)} at t = 1 for the oscillator with h = "
-        f"{', '.join(text(Fraction(1, n)) for n in STEPS)}",
-        [
-            step("For symplectic Euler (Eq. 24, 32) ΔJ = 0 at every point, so MSE = 0.", zero),
-            step(
-                "For H = (p² + q²)/2 from (q, p) = (1, 0) its error at t = 1 is about 0.42 h.",
-                *errors,
-            ),
-        ],
-        setting="Let the calculated values be those of (p, q).",
+    return _TEXTS.refutation(
+        "mse_quantifies_solution",
+        zero=zero,
+        errors=errors,
+        error_values=", ".join(error.value for error in errors),
+        step_sizes=", ".join(text(Fraction(1, n)) for n in STEPS),
     )
 
 
@@ -94,18 +69,7 @@ def _error_at_1(formulas: Sequence[str], steps: int) -> Check:
 
 def errors_in_every_step() -> Argument:
     """Prove that ΔJ of lie2 is not 0 at almost every state of either system."""
-    return proof(
-        "for both systems ΔJ of lie2 is an analytic function of (p, q) that is not identically 0, "
-        "for any h > 0: it is 0 on a set of measure 0 alone",
-        [
-            step(
-                "For δ ≠ 0, h > 0 ΔJ of lie2 is not identically 0 in (p, q): its part that is "
-                "proportional to p is not.",
-                *map(_part_in_p, examples.SYSTEMS),
-            ),
-            step("Zeros of an analytic function that is not 0 everywhere have measure 0."),
-        ],
-    )
+    return _TEXTS.proof("errors_in_every_step", part_in_p=map(_part_in_p, examples.SYSTEMS))
 
 
 def _part_in_p(name: str) -> Check:
@@ -131,11 +95,7 @@ def errors_in_every_step_exactly(
         [sympy.expand(step_map.delta_j.subs(substitution, simultaneous=True))],
         ("h",),
     )
-    return refutation(
-        f"for the Duffing oscillator with δ = 1 the step from q = {text(q)}, p = −4h/3 has ΔJ = 0, "
-        "as those have from every point of the curve 12pq = −h (1 + 3q²)²",
-        [step("ΔJ = 3h³pq + `h⁴ (1 + 3q²)²/4` is 0 on this curve.", vanishing)],
-    )
+    return _TEXTS.refutation("errors_in_every_step_exactly", vanishing=vanishing, q=text(q))
 
 
 # -- Section 4.1 -----------------------------------------------------------------------------------
@@ -156,36 +116,24 @@ def duffing_criteria_inference(
         growth = (1 + rational_ball(pair)) ** (steps // 2) - 1
         near = bool(growth > 5e-6) and bool(growth < 2e-5)
         text_of_growth = growth.mid().str(3, radius=False)
-    return refutation(
-        "criteria 2 and 4 speak of h → 0, and a number at one h says nothing of that: a map that "
-        "does not depend on h at all, with ΔJ = 10⁻¹¹ (1/20 ± 1), has these very numbers at h = "
-        "0.001 and satisfies neither",
-        [
-            step(
-                "p' = −p (1 + 10⁻¹¹ (q + 1/20)), q' = −q from (p, q) = (0, 1) alternates between "
-                "two ΔJ, about ±10⁻¹¹, whatever h is: |ΔJ| is about 10⁻¹¹ and no o(h).",
-                Check(
-                    "the map: it returns after two steps, and max |ΔJ|",
-                    returns
-                    and H_STEP not in step_map.delta_j.free_symbols
-                    and 5e-12 < size < 2e-11,
-                    f"`{decimal(size, 3)}`",
-                    NUMBERS,
-                ),
-            ),
-            step(
-                "Over [0, 20000] with h = 0.001 its Λ is about 10⁻⁵.",
-                Check(f"the map: Λ after {steps} steps", near, f"`{text_of_growth}`", BALLS),
-            ),
-            step(
-                "After N = T/h steps 1 + Λ is a fixed number above 1 to the power N/2, which does "
-                "not tend to 1 as h → 0.",
-                Check("the map: ΔJ of two steps together is positive", pair > 0,
-                      f"`{decimal(pair, 3)}`", NUMBERS),
-            ),
-        ],
-        remark="That lie2 satisfies both criteria is true, and shown by Eq. 21.",
-    )  # fmt: skip
+    return _TEXTS.refutation(
+        "duffing_criteria_inference",
+        returns_after_two=Check(
+            "the map: it returns after two steps, and max |ΔJ|",
+            returns and H_STEP not in step_map.delta_j.free_symbols and 5e-12 < size < 2e-11,
+            f"`{decimal(size, 3)}`",
+            NUMBERS,
+        ),
+        after_all_steps=Check(
+            f"the map: Λ after {steps} steps", near, f"`{text_of_growth}`", BALLS
+        ),
+        two_together=Check(
+            "the map: ΔJ of two steps together is positive",
+            pair > 0,
+            f"`{decimal(pair, 3)}`",
+            NUMBERS,
+        ),
+    )
 
 
 # -- “the total error of the mapping will keep increasing” -----------------------------------------
@@ -210,29 +158,11 @@ def total_error_increases(
         "the coefficient of h³ in ΔJ of lie2 is X·G for a generic H, with G = det Hess H/2",
         flow.delta_j_gaps(2, h3=flow.derive(flow.hessian_determinant / 2))[2],
     )
-    return refutation(
-        f"for the Duffing oscillator (δ = 1, lie2, h = {text(h)}) from (p, q) = {start}, |Λ| after "
-        f"1, 2, … steps is {totals_text}, exact but for the rounding of what is shown; the leading "
-        "part of Λ is a boundary term that does not grow",
-        [
-            step(
-                "`ΔJ_k` has both signs, so its product need not grow: from (p, q) = (1, −1/20) the "
-                "Duffing oscillator crosses q = 0, where pq changes its sign and with it 3h³δpq, "
-                "and |Λ| falls within two steps.",
-                falls,
-            ),
-            step(
-                "It is not a matter of a few steps. For lie2 and every smooth H the leading term "
-                "of ΔJ is a derivative along the flow: ``ΔJ = (h^3/2) X(det Hess H) + O(h^4)``.",
-                telescopes,
-                ShippedTheorem("Theorems", "lie_telescopes_in_plane_for_even"),
-                ShippedTheorem("Theorems", "determinant_of_lie_in_plane"),
-            ),
-            step(
-                "On a fixed [0, T] its sum is therefore a boundary term, with D = det Hess H: ``Λ "
-                "= (h^2/2)(D(z(T)) − D(z(0))) + O(h^3)``. On a periodic orbit it returns to O(h³) "
-                "after every period.",
-            ),
-        ],
-        remark="It is the next order that may grow with T.",
+    return _TEXTS.refutation(
+        "total_error_increases",
+        falls=falls,
+        telescopes=telescopes,
+        h=text(h),
+        start=str(start),
+        totals=totals_text,
     )

@@ -7,11 +7,13 @@ import sympy
 from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import decimal, text
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import NUMBERS, Argument, Check, proof, refutation, same, step
+from verify.papers.argument import NUMBERS, Argument, ArgumentTexts, Check, same
 from verify.papers.elementary_identities import stretching
 from verify.papers.exact_maps import RationalPoint, jacobian, next_point, squared_distance
 from verify.papers.lie_derivative_scheme.examples import duffing_step, with_symbols
 from verify.papers.lie_derivative_scheme.lipschitz import PAIR
+
+_TEXTS = ArgumentTexts(__file__)
 
 _EDGE = Fraction(2, 3)  # of |δ|q²
 STRETCHED = RationalPoint(p=Fraction(0), q=Fraction(2))
@@ -31,46 +33,15 @@ def two_norm(point: RationalPoint = STRETCHED, h: Fraction = Fraction(1, 10)) ->
         text(stretch * (1 - h) ** 2),
         NUMBERS,
     )
-    return refutation(
-        f"‖J‖₂ itself is the local Lipschitz constant of the step, and may exceed 1 + h‖J‖₂: for "
-        f"the Duffing step at (p, q) = {point}, h = {text(h)}, (1 − h)² ‖J‖₂² is at least "
-        f"{text(stretch * (1 - h) ** 2)}, more than 1",
-        [
-            step(
-                "The inequality |Φ(z̄) − Φ(z)| ≤ (1 + h‖J‖₂) |z̄ − z| for z̄ near z needs "
-                "``‖J‖₂ ≤ 1 + h‖J‖₂``, as ‖J‖₂ is the local Lipschitz constant of Φ.",
-            ),
-            step(
-                f"For the Duffing oscillator with δ = 1, h = {text(h)}, at (p, q) = {point} "
-                "``(1 − h)^2 ‖J‖₂^2 > 1``, so that this is false.",
-                exceeds,
-            ),
-            step(
-                "It is no accident: J = 1 + hf' + O(h²), so ‖J‖₂ = 1 + hs + O(h²) with s the "
-                "greatest eigenvalue of the symmetric part of f', whereas 1 + h‖J‖₂ = 1 + h + "
-                "O(h²). Wherever s > 1 the inequality fails for all small h.",
-            ),
-            step(
-                "That symmetric part has the eigenvalues ±s, "
-                "``s^2 = H_{pq}^2 + (H_{pp} − H_{qq})^2/4``.",
-                stretching(),
-            ),
-            step(
-                "For the Duffing oscillator s = 3|δ|q²/2, so it fails where |δ|q² > 2/3. (For the "
-                "pendulum s = (1 − cos q)/2 ≤ 1.)",
-                *(_stretch_of(name) for name in _STRETCHES),
-            ),
-            step(
-                "Where |δ|q² < 2/3 it holds for small h: of the paper’s five initial values along "
-                "the orbits from (q, p) = (0.1, 0) and (0.5, 0), which stay there, and from no "
-                "other.",
-                tried=[_is_a_factor(Fraction(*q)) for q in _BESIDE],
-            ),
-        ],
-        setting="‖J‖₂ is the local Lipschitz constant of the step map itself, Φ, whose factor in "
-        "Eq. 9 is 1 + hL. To put L = ‖J‖₂ counts it twice.",
-        remark="What Eq. 9 needs in a norm is L = max (‖J‖₂ − 1)/h, or any bound of ‖ψ'‖, Φ = z + "
-        "hψ, which stays bounded as h → 0; with it the conclusion of Section 2.2 stands.",
+    return _TEXTS.refutation(
+        "two_norm",
+        exceeds=exceeds,
+        stretching=stretching(),
+        stretch_of=[_stretch_of(name) for name in _STRETCHES],
+        is_a_factor=[_is_a_factor(Fraction(*q)) for q in _BESIDE],
+        point=str(point),
+        h=text(h),
+        size=text(stretch * (1 - h) ** 2),
     )
 
 
@@ -118,22 +89,7 @@ def two_norm_of_the_step(scale: Fraction = Fraction(1)) -> Argument:
         f"`{decimal(stretch, 4)}` ≤ `{decimal(scale * max(norms), 4)}`",
         NUMBERS,
     )
-    return proof(
-        "the greatest ‖`J_k`‖₂ on a convex set is the least Lipschitz constant there of "
-        "(`p_{k+1}`, `q_{k+1}`) as functions of (`p_k`, `q_k`), which is the factor 1 + hL of Eq. "
-        "9",
-        [
-            step(
-                "By the mean value theorem, the maximum taken over the segment, "
-                "``|Φ(z̄) − Φ(z)| ≤ max ‖J‖₂ |z̄ − z|``.",
-                tried=[example],
-            ),
-            step("Along the direction that J stretches most nothing less will do."),
-        ],
-        remark="So if `L_p` stands for the Lipschitz constant “of `p_{k+1}` and `q_{k+1}`”, as the "
-        "text after Eq. 9 calls it, then ‖`J_k`‖₂ is right. It then takes the place of the whole "
-        "factor 1 + hL in Eq. 9.",
-    )
+    return _TEXTS.proof("two_norm_of_the_step", example=example)
 
 
 def _norm_squared(entries: tuple[Fraction, ...]) -> Fraction:

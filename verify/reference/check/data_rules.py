@@ -22,12 +22,7 @@ from verify.hamiltonians.coordinates import coordinates_in
 from verify.reference.check.difference import DataFindings, DataPlace
 from verify.reference.make.data_files import MANIFEST, Manifest, names_of
 from verify.reference.make.models import AnyData, AnyFlow, AnyProof, AnyRun, format_of, heading
-from verify.reference.make.row_values import (
-    AFTER_A_STEP,
-    MAY_LACK,
-    correctly_rounded,
-    values_of,
-)
+from verify.reference.make.row_values import AFTER_A_STEP, MAY_LACK, correctly_rounded, values_of
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, solution_tasks
 from verify.scenes.results.reference import FlowRow, OrbitRow, Rounded
 from verify.scenes.scene import Scene, scene_from_toml

@@ -15,14 +15,7 @@ from typing import TypeVar
 from pydantic import BaseModel, ValidationError
 
 from verify.errors import InputError
-from verify.execution.executors import (
-    LOCAL_DEFAULT,
-    THIS_PROCESS,
-    FunctionCall,
-    Placement,
-    open_place,
-    results_of,
-)
+from verify.execution import executors
 from verify.files import MOST_BYTES, read_bytes, text_of
 from verify.formats import check_format
 from verify.reference.check import data_rules
@@ -34,6 +27,7 @@ from verify.reference.check.difference import (
     compare_texts,
 )
 from verify.reference.check.recomputation import recompute_unit
+from verify.reference.make import models
 from verify.reference.make.data_files import (
     MANIFEST,
     MANIFEST_FORMAT,
@@ -46,16 +40,11 @@ from verify.reference.make.data_files import (
     tables,
 )
 from verify.reference.make.file_contents import json_of, rows_of
-from verify.reference.make.models import (
-    MODELS,
-    AnyData,
-    format_at,
-)
 from verify.reference.make.scene_plan import size_of
 from verify.scenes.scene import Scene, scene_from_toml
 
 M = TypeVar("M", bound=BaseModel)
-Unit = tuple[AnyData, str, str, int]  # what `recomputed` takes
+Unit = tuple[models.AnyData, str, str, int]  # what `recomputed` takes
 _MOST_BYTES_OF_ALL = 8 * MOST_BYTES  # of the files that are listed; they are held in memory
 _WORTH_A_POOL = 150  # recomputations, below which starting workers costs more than it gains
 
@@ -78,7 +67,7 @@ def check(
     seed: int,
     scenes_folder: Path | None = None,
     most_steps: int | None = None,
-    where: Placement = LOCAL_DEFAULT,
+    where: executors.Placement = executors.LOCAL_DEFAULT,
     done: Callable[[int, int], None] | None = None,
 ) -> CheckResult:
     """Check all files of the folder, and compute a random share of its data again.
@@ -99,11 +88,13 @@ def check(
     if findings.differences:  # what is asked for may not even be known
         return findings
     chosen = _select_affordable(_choose(units, share, seed), most_steps, findings)
-    calls = [FunctionCall(str(k), recompute_unit, unit) for k, unit in enumerate(chosen)]
+    calls = [executors.FunctionCall(str(k), recompute_unit, unit) for k, unit in enumerate(chosen)]
     parts: dict[str, DataFindings] = {}
-    serial = where == LOCAL_DEFAULT and len(calls) < _WORTH_A_POOL
-    with open_place(THIS_PROCESS if serial else where, [recompute_unit.__module__]) as place:
-        for name, part in results_of(place, calls):
+    serial = where == executors.LOCAL_DEFAULT and len(calls) < _WORTH_A_POOL
+    with executors.open_place(
+        executors.THIS_PROCESS if serial else where, [recompute_unit.__module__]
+    ) as place:
+        for name, part in executors.results_of(place, calls):
             parts[name] = part
             if done:
                 done(len(parts), len(calls))
@@ -146,7 +137,7 @@ def _select_affordable(
 
 def _check_files(
     folder: Path, scenes_folder: Path | None, findings: CheckResult
-) -> Iterator[tuple[AnyData, str]]:
+) -> Iterator[tuple[models.AnyData, str]]:
     if not folder.is_dir():
         raise InputError(
             "DIR", str(folder), "is no folder; give one that `verify reference make` wrote"
@@ -163,11 +154,11 @@ def _check_files(
             # The sum is checked after every file, so that a folder of many files cannot exhaust the
             # memory.
             raise InputError("DIR", str(folder), f"has more than {_MOST_BYTES_OF_ALL} bytes")
-    data_by_file: dict[str, AnyData | None] = {}
+    data_by_file: dict[str, models.AnyData | None] = {}
     for name, content in contents.items():  # all are read before one is held against another
         if name.endswith(".json") and name not in SCHEMAS:
-            form = format_at(folder / name)
-            data_by_file[name] = _parse_model(MODELS[form], form, content, name, findings)
+            form = models.format_at(folder / name)
+            data_by_file[name] = _parse_model(models.MODELS[form], form, content, name, findings)
         elif name.endswith(".csv"):
             rows_of(content, name)
     for listed in manifest.files:
@@ -190,8 +181,8 @@ def _check_files(
 
 
 def _check_scene(
-    data: AnyData, file: str, scene: Scene, contents: dict[str, bytes], findings: CheckResult
-) -> Iterator[tuple[AnyData, str]]:
+    data: models.AnyData, file: str, scene: Scene, contents: dict[str, bytes], findings: CheckResult
+) -> Iterator[tuple[models.AnyData, str]]:
     data_rules.check_data(data, scene, DataPlace(findings, file))
     for name, rows in tables(data).items():
         content = contents.get(f"{name}.csv")

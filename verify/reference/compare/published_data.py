@@ -19,16 +19,9 @@ from verify.hamiltonians.coordinates import coordinates_in
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.run_domain import point_of
 from verify.reference.compare.setting import numbers_of
+from verify.reference.make import models
 from verify.reference.make.data_files import MANIFEST, SCHEMAS
 from verify.reference.make.file_contents import json_of
-from verify.reference.make.models import (
-    DATA_FORMAT,
-    DATA_IN_DEGREES_FORMAT,
-    MODELS,
-    AnyData,
-    AnyRun,
-    format_at,
-)
 from verify.reference.make.orbit_computation import Bounded
 from verify.reference.make.row_values import orbit_columns, values_of
 from verify.runs.run_start import Start
@@ -36,8 +29,10 @@ from verify.scenes.results.reference import OrbitRow, Rounded
 
 _EXPONENT_DIGITS = 6
 _NO_DATA_TEXTS = {
-    DATA_FORMAT: "has no reference data; give a folder that `verify reference make` wrote",
-    DATA_IN_DEGREES_FORMAT: "has no reference data of p1 … pn, q1 … qn, as the table's columns are",
+    models.DATA_FORMAT: "has no reference data; give a folder that `verify reference make` wrote",
+    models.DATA_IN_DEGREES_FORMAT: (
+        "has no reference data of p1 … pn, q1 … qn, as the table's columns are"
+    ),
 }
 Inputs = Mapping[str, str | float]  # the scheme, and h and the start to the nearest double
 
@@ -48,7 +43,7 @@ class PublishedRun:
 
     scene: str
     hamiltonian: Hamiltonian
-    run: AnyRun
+    run: models.AnyRun
 
     @cached_property
     def texts(self) -> dict[str, str]:
@@ -151,8 +146,8 @@ def load(folder: Path, scene: str | None, *, planar: bool = True) -> Published:
     names = {path.name for path in folder.glob("*.json")} - {MANIFEST, *SCHEMAS}
     if scene is not None and f"{scene}.json" in names:
         names = {f"{scene}.json"}
-    form = DATA_FORMAT if planar else DATA_IN_DEGREES_FORMAT
-    names = {name for name in names if format_at(folder / name) == form}
+    form = models.DATA_FORMAT if planar else models.DATA_IN_DEGREES_FORMAT
+    names = {name for name in names if models.format_at(folder / name) == form}
     runs = [run for name in sorted(names) for run in _read_runs(folder / name, form)]
     if not runs:
         raise InputError("--data", str(folder), _NO_DATA_TEXTS[form])
@@ -174,10 +169,10 @@ def _read_runs(path: Path, form: str) -> Iterator[PublishedRun]:
         yield PublishedRun(data.name, hamiltonian, run)
 
 
-def _read_data(path: Path, form: str) -> AnyData:
+def _read_data(path: Path, form: str) -> models.AnyData:
     raw = check_format(json_of(read_bytes(path), path.name), form, path.name)
     try:
-        return MODELS[form].model_validate(raw)
+        return models.MODELS[form].model_validate(raw)
     except ValidationError as error:
         first_error = error.errors(include_url=False)[0]
         location = ".".join(map(str, first_error["loc"]))

@@ -123,10 +123,8 @@ _OF_STATES = {AREA: _changes_in_plane, SYMPLECTIC: _changes_in_degrees}
 
 def _column_changes(orbit: Start) -> Iterator[Change]:
     p, q, swap = orbit.point["p"], orbit.point["q"], (("p", "q"),)
-    swapped_start, reversed_start = (
-        _with_numbers(orbit, {"p0": q, "q0": p}),
-        _with_numbers(orbit, {"p0": -p}),
-    )
+    swapped_start = _with_numbers(orbit, {"p0": q, "q0": p})
+    reversed_start = _with_numbers(orbit, {"p0": -p})
     energy = Hamiltonian(-orbit.hamiltonian.expression, orbit.hamiltonian.values)
     backwards = replace(orbit, hamiltonian=energy)
     yield "swapped-columns", "your columns p and q are swapped", {"swaps": swap}

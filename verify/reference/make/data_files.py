@@ -21,13 +21,7 @@ from verify.reference.make.models import (
     Proof,
     ProofInDegrees,
 )
-from verify.reference.make.row_values import (
-    Row,
-    cell,
-    orbit_columns,
-    start_columns,
-    values_of,
-)
+from verify.reference.make.row_values import Row, cell, orbit_columns, start_columns, values_of
 from verify.scenes.frozen import Frozen
 
 ManifestFormat = Literal["areaproof reference manifest 1"]

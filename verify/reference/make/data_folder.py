@@ -13,6 +13,7 @@ from verify.errors import InputError
 from verify.execution.provenance import versions
 from verify.files import MOST_BYTES, read_text, write_atomically
 from verify.formats import names_format
+from verify.reference.make import models
 from verify.reference.make.data_files import (
     MANIFEST,
     MANIFEST_FORMAT,
@@ -26,12 +27,6 @@ from verify.reference.make.data_files import (
     schema_text,
     schemas_for,
     tables,
-)
-from verify.reference.make.models import (
-    MODELS,
-    AnyData,
-    format_of,
-    heading,
 )
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, size_of, solution_tasks
 from verify.scenes.results.proof_result import ProofResult
@@ -79,14 +74,14 @@ def committed_scenes() -> list[Path]:
     return sorted(SCENES.glob("*.toml"))
 
 
-def data_of(scene: Scene, results: Mapping[str, Any]) -> AnyData:
+def data_of(scene: Scene, results: Mapping[str, Any]) -> models.AnyData:
     """Return a scene's data from the results of its tasks, by their keys."""
     hamiltonian = scene.exact_hamiltonian()
-    form = format_of(hamiltonian.degrees)
+    form = models.format_of(hamiltonian.degrees)
     content = {
         "format": form,
         "name": scene.name,
-        **heading(hamiltonian),
+        **models.heading(hamiltonian),
         "proofs": [_proof(task.scheme, results[task.key]) for task in proof_tasks(scene)],
         "runs": [
             {"scheme": task.scheme, **task.inputs, "rows": _rows(results[task.key])}
@@ -96,7 +91,7 @@ def data_of(scene: Scene, results: Mapping[str, Any]) -> AnyData:
             {**task.inputs, "rows": _rows(results[task.key])} for task in solution_tasks(scene)
         ],
     }
-    return MODELS[form].model_validate(content)
+    return models.MODELS[form].model_validate(content)
 
 
 def _rows(result: OrbitResult | SolutionResult) -> list[dict[str, Any]]:
@@ -120,7 +115,7 @@ def check_is_alone(folder: Path, scenes: Sequence[SceneText], *, parquet: bool) 
     in a check, or a file of one of our names that is not ours."""
     # The check compares the folder with the list of its files: any other file would be a
     # difference.
-    formats = {x.scene.name: format_of(x.scene.exact_hamiltonian().degrees) for x in scenes}
+    formats = {x.scene.name: models.format_of(x.scene.exact_hamiltonian().degrees) for x in scenes}
     names = {MANIFEST, *names_of(formats, parquet=parquet)}
     forms = {MANIFEST: MANIFEST_FORMAT, **{f"{name}.json": x for name, x in formats.items()}}
     present = {path.name: path for path in folder.iterdir()}
@@ -135,7 +130,7 @@ def check_is_alone(folder: Path, scenes: Sequence[SceneText], *, parquet: bool) 
         raise InputError("--output", str(folder), problem)
 
 
-def files_of(data: Sequence[AnyData], *, parquet: bool = False) -> dict[str, bytes]:
+def files_of(data: Sequence[models.AnyData], *, parquet: bool = False) -> dict[str, bytes]:
     """Return the content of all files but the manifest, by name."""
     schemas = schemas_for(scene_data.format for scene_data in data)
     files = {name: schema_text(name).encode() for name in schemas}

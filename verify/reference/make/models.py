@@ -15,12 +15,7 @@ from verify.hamiltonians.coordinates import coordinates_in
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.reference.make.row_values import start_columns
 from verify.scenes.frozen import Frozen
-from verify.scenes.results.reference import (
-    FlowPoint,
-    FlowPointInDegrees,
-    OrbitPoint,
-    OrbitPointInDegrees,
-)
+from verify.scenes.results import reference
 from verify.structures import AREA, SYMPLECTIC, structure_in
 from verify.verdict import Verdict
 
@@ -158,7 +153,7 @@ class ProofInDegrees(WithScheme):
 class Run(_InPlane, WithScheme):
     """One scheme's orbit from one initial value with one step size."""
 
-    rows: tuple[OrbitPoint, ...] = Ascending
+    rows: tuple[reference.OrbitPoint, ...] = Ascending
 
 
 class RunInTime(_InTime, Run):
@@ -168,13 +163,13 @@ class RunInTime(_InTime, Run):
 class RunInDegrees(_InDegrees, WithScheme):
     """One scheme's orbit from one initial value with one step size."""
 
-    rows: tuple[OrbitPointInDegrees, ...] = Ascending
+    rows: tuple[reference.OrbitPointInDegrees, ...] = Ascending
 
 
 class Flow(_InPlane):
     """The exact solution of p' = −H_q, q' = H_p from one initial value, at the times N·h."""
 
-    rows: tuple[FlowPoint, ...] = Ascending
+    rows: tuple[reference.FlowPoint, ...] = Ascending
 
 
 class FlowInTime(_InTime, Flow):
@@ -184,7 +179,7 @@ class FlowInTime(_InTime, Flow):
 class FlowInDegrees(_InDegrees):
     """The exact solution of p' = −∂H/∂q, q' = ∂H/∂p from one initial value, at the times N·h."""
 
-    rows: tuple[FlowPointInDegrees, ...] = Ascending
+    rows: tuple[reference.FlowPointInDegrees, ...] = Ascending
 
 
 class _SceneData(Frozen):

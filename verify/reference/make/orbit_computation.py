@@ -33,25 +33,18 @@ from verify.reference.make.row_values import (
 )
 from verify.runs.requested_run import RequestedRun
 from verify.runs.run_start import Start
-from verify.scenes.results.reference import (
-    FlowPoint,
-    FlowPointInDegrees,
-    Kind,
-    OrbitPoint,
-    OrbitPointInDegrees,
-    Rounded,
-)
+from verify.scenes.results import reference
 from verify.scenes.values import AUTO
 from verify.schemes.maps.ball_algebra import UndefinedError, step_in_balls
 from verify.structures import AREA, SYMPLECTIC
 
 _GUARDS = (10, 25, 60, 150)  # digits beyond those asked for, in turn
 _BITS = 64  # beyond the digits, for the roundings of one step, or of H
-_ORBITS = {AREA: OrbitPoint, SYMPLECTIC: OrbitPointInDegrees}
-_FLOWS = {AREA: FlowPoint, SYMPLECTIC: FlowPointInDegrees}
+_ORBITS = {AREA: reference.OrbitPoint, SYMPLECTIC: reference.OrbitPointInDegrees}
+_FLOWS = {AREA: reference.FlowPoint, SYMPLECTIC: reference.FlowPointInDegrees}
 _UNKNOWN: dict[str, Any] = {"status": "unresolved", "kind": None, "failed_step": None}
 Bounded = tuple[Fraction, Fraction]  # a value and its bound
-Numbers = Mapping[str, Rounded | None]  # by the names of their columns
+Numbers = Mapping[str, reference.Rounded | None]  # by the names of their columns
 
 
 def orbit_points(orbit: Start, steps: Sequence[int], digits: int) -> Course[tuple[Any, ...]]:
@@ -78,7 +71,7 @@ def _point_after(orbit: Start, step: int, digits: int) -> Course[tuple[dict[str,
     for guard in _GUARDS:
         bounded = {name: (x, Fraction(0)) for name, x in start.items()}
         bounded |= dict.fromkeys(at_first, (Fraction(0), Fraction(0)))
-        kind: Kind = "enclosed"
+        kind: reference.Kind = "enclosed"
         if step > 0:
             request = RequestedRun(
                 **orbit.run_arguments,
@@ -103,7 +96,7 @@ def _point_after(orbit: Start, step: int, digits: int) -> Course[tuple[dict[str,
 
 def _round_all(
     bounded: Mapping[str, Bounded], start: Mapping[str, Fraction], digits: int, guard: int
-) -> dict[str, Rounded | None]:
+) -> dict[str, reference.Rounded | None]:
     """Round each number; with the last guard a 0 too, coordinates against the initial value."""
     largest = max(map(abs, start.values()))
     values = {name: correctly_rounded(*x, digits) for name, x in bounded.items()}
@@ -191,7 +184,7 @@ def _solution_at(
     t0: Fraction,
     time: Fraction,
     digits: int,
-) -> tuple[str, Kind | None, Numbers]:
+) -> tuple[str, reference.Kind | None, Numbers]:
     """Return the status of a row of the exact flow, the kind of its radii, and its values."""
     try:
         for guard in _GUARDS:

@@ -95,10 +95,8 @@ class SolutionTask(StepsTask):
         from verify.reference.make.orbit_computation import solution_points
 
         hamiltonian, t0 = self.exact_hamiltonian(), self.t0 or Fraction()
-        start, times = (
-            point_of(hamiltonian, self.q, self.p),
-            {n: n * self.step_size for n in self.steps},
-        )
+        start = point_of(hamiltonian, self.q, self.p)
+        times = {n: n * self.step_size for n in self.steps}
         points = solution_points(hamiltonian, start, t0, times, self.digits)
         return SolutionResult(points=tuple(points))
 

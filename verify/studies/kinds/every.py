@@ -10,8 +10,6 @@ from verify.scenes.results.proof_result import EveryResult
 from verify.scenes.scene import Scene
 from verify.schemes import get
 
-_COST = 20_000_000  # of a proof, about
-
 
 class EveryTask(Task):
     """Prove properties of a scheme for every H, in so many degrees of freedom.
@@ -25,15 +23,11 @@ class EveryTask(Task):
         "verify.proof.checked.proved_statement",
         "verify.proof.order_for_every_h",
     )
+    price = 20_000_000
     kind: Literal["every"] = "every"
     scheme: str
     timed: bool = False
     degrees: int = 1
-
-    @property
-    def cost(self) -> int:
-        """About the number of float64 steps that it is worth."""
-        return _COST
 
     def compute(self, keeper: Keeper) -> EveryResult:
         """Return the proof for every H as a result."""
@@ -50,8 +44,7 @@ class EveryTask(Task):
         }
         if not proof.planar:  # S is written out in its formula, where it has one
             differs |= {"formula": "", "leading": proof.formula or proof.leading}
-        same = EveryResult.model_fields.keys() - differs
-        return EveryResult(**{name: getattr(proof, name) for name in same}, **differs)
+        return EveryResult.from_object(proof, **differs)
 
 
 def _need(plan: Plan, scene: Scene, scheme: str, _preserves: bool) -> None:

@@ -10,7 +10,6 @@ from verify.scenes.results.growth import AverageResult, GrowthLawResult
 from verify.scenes.scene import Scene
 from verify.studies.kinds.grid import grid_runs
 
-_COST = 25_000_000  # of a law and its time average, about
 _DIGITS = 30  # of the time average
 
 
@@ -19,13 +18,9 @@ class GrowthTask(StartTask):
 
     result = AverageResult
     imports = ("verify.studies.growth_prediction",)
+    price = 25_000_000
     kind: Literal["growth"] = "growth"
     digits: int
-
-    @property
-    def cost(self) -> int:
-        """About the number of float64 steps that it is worth."""
-        return _COST
 
     def compute(self, keeper: Keeper) -> AverageResult:
         """Return the law, with its average enclosed."""

@@ -18,7 +18,6 @@ from verify.structures.structure import is_zero
 if TYPE_CHECKING:
     from verify.proof.structures.structure_order import StructureProof
 
-_COST = 20_000_000  # of the proofs, about
 # The determinant of more takes long; then volume is for the scene to ask for.
 _MOST_COORDINATES = 12
 # What is asked of a field whose flow keeps it, where its scene says nothing.
@@ -30,13 +29,9 @@ class KeepsTask(SchemeTask):
 
     result = KeptResult
     imports = ("verify.proof.structures.structures_proof",)
+    price = 20_000_000
     kind: Literal["keeps"] = "keeps"
     keeps: Keeps
-
-    @property
-    def cost(self) -> int:
-        """About the number of float64 steps that it is worth."""
-        return _COST
 
     def compute(self, keeper: Keeper) -> KeptResult:
         """Return the proofs as a result."""
@@ -45,21 +40,17 @@ class KeepsTask(SchemeTask):
         system, scheme, start_time = self.exact_hamiltonian(), get(self.scheme), time.perf_counter()
         claims = read_structures(self.keeps.request(*self.keeps.structures), system)
         proof = prove_structures(scheme.step_map(system), claims, scheme)
-        return KeptResult(
-            **system.texts, scheme=self.scheme, verdict=proof.verdict, reason=proof.reason,
-            convergence_order=proof.convergence_order,
-            convergence_decided=proof.convergence_decided,
+        return KeptResult.from_object(
+            proof, **system.texts, scheme=self.scheme,
             keeps=tuple(_result_of(x, system) for x in proof.keeps),
             seconds=time.perf_counter() - start_time,
         )  # fmt: skip
 
 
 def _result_of(x: "StructureProof", system: Hamiltonian) -> StructureResult:
-    return StructureResult(
-        structure=x.structure.name, label=x.structure.label,
-        defect=x.structure.defect_formula, verdict=x.verdict, reason=x.reason,
-        exact=x.is_kept, order=x.order, claimed=x.claimed, leading=x.leading or None,
-        component=x.component or None, telescopes=x.telescopes, potential=x.potential,
+    return StructureResult.from_object(
+        x, structure=x.structure.name, label=x.structure.label, defect=x.structure.defect_formula,
+        exact=x.is_kept, leading=x.leading or None, component=x.component or None,
         domain=x.domain.texts, where=x.domain.prose,
         observable=observable_of(x.structure, system),
     )  # fmt: skip

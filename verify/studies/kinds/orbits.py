@@ -97,23 +97,15 @@ class PoincareTask(HamiltonianTask):
 
 def _period_tasks(scene: Scene, section: Stroboscopic) -> Iterator[StroboscopicTask]:
     for scheme in section.schemes or scene.schemes:
-        yield StroboscopicTask(
-            **scene.hamiltonian_fields(), scheme=scheme,
-            initial_values=section.initial_values, t0=scene.begin,
-            step_size=section.step_size, steps=section.steps, periods=section.periods,
-            digits=section.digits,
-        )  # fmt: skip
+        fields = scene.hamiltonian_fields() | {"scheme": scheme, "t0": scene.begin}
+        yield StroboscopicTask.from_object(section, **fields)
 
 
 def _surface_tasks(scene: Scene, section: Poincare) -> Iterator[PoincareTask]:
     maps = section.schemes or scene.schemes
     for name in (EXACT_FLOW, *maps) if section.exact else maps:
-        yield PoincareTask(
-            **scene.hamiltonian_fields(), map=name,
-            initial_values=section.initial_values, coordinate=section.coordinate,
-            value=section.value, rising=section.rising, draw=section.draw,
-            step_size=section.step_size, steps=section.count, digits=section.digits,
-        )  # fmt: skip
+        fields = scene.hamiltonian_fields() | {"map": name, "steps": section.count}
+        yield PoincareTask.from_object(section, **fields)
 
 
 def _need(plan: Plan, scene: Scene) -> None:
@@ -132,14 +124,13 @@ def _period_results(scene: Scene, results: Results) -> Iterator[StroboscopicResu
     for section in scene.stroboscopic:
         sections = results_of_tasks(SchemeSections, _period_tasks(scene, section), results)
         if sections:
-            yield StroboscopicResult(
+            yield StroboscopicResult.from_object(
+                section,
                 period=text(section.period),
                 step_size=text(section.step_size),
-                periods=section.periods,
                 t0=begin,
                 q_is_angle=is_angle(scene.exact_hamiltonian()),
                 sections=tuple(sections),
-                source=section.source,
             )
 
 
@@ -147,16 +138,13 @@ def _surface_results(scene: Scene, results: Results) -> Iterator[PoincareResult]
     for section in scene.poincare:
         sections = results_of_tasks(MapSections, _surface_tasks(scene, section), results)
         if sections:
-            yield PoincareResult(
-                coordinate=section.coordinate,
+            yield PoincareResult.from_object(
+                section,
                 value=text(section.value),
-                rising=section.rising,
-                draw=section.draw,
                 step_size=text(section.step_size),
                 steps=section.count,
                 time=text(section.step_size * section.count),
                 sections=tuple(sections),
-                source=section.source,
             )
 
 

@@ -22,7 +22,6 @@ from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
 from verify.schemes.steps.two_form import MOST_TERMS
 
-_COST = 10_000_000  # of a proof, about
 _LONG = 12  # digits of a value that no formula is read with
 _FORMULAS = ("delta_j", "p_next", "q_next", "jacobian")
 
@@ -35,13 +34,9 @@ class ProofTask(SchemeTask):
     """
 
     result = ProofResult
+    price = 10_000_000
     kind: Literal["proof"] = "proof"
     formulas: bool = True
-
-    @property
-    def cost(self) -> int:
-        """About the number of float64 steps that it is worth."""
-        return _COST
 
     def compute(self, keeper: Keeper) -> ProofResult:
         """Return the proof for this H as a result."""
@@ -50,18 +45,12 @@ class ProofTask(SchemeTask):
         step_map = scheme.step_map(hamiltonian)
         proof = prove(step_map, scheme)
         extra_fields = _extra_fields(proof, scheme, self.formulas)
-        return ProofResult(
+        return ProofResult.from_object(
+            proof,
             **hamiltonian.texts,
             scheme=self.scheme,
-            verdict=proof.verdict,
-            reason=proof.reason,
-            order=proof.order,
             leading=proof.leading_text,
-            area_preserving=proof.area_preserving,
-            convergence_order=proof.convergence_order,
-            convergence_decided=proof.convergence_decided,
             witness={name: text(value) for name, value in proof.witness.items()},
-            enclosure=proof.enclosure,
             domain=proof.domain.texts,
             where=proof.domain.prose,
             **extra_fields,
@@ -98,16 +87,7 @@ def _describe_form(proof: Proof) -> FormResult:
         entries = tuple(
             (leading.entry_name(position), leading.ring.text(x)) for position, x in nonzero_entries
         )
-    return FormResult(
-        symplectic=proof.symplectic,
-        entries=entries,
-        entry=proof.entry,
-        volume_order=proof.volume_order,
-        volume_leading=proof.volume_leading,
-        telescopes=proof.telescopes,
-        potential=proof.potential,
-        why=proof.why,
-    )
+    return FormResult.from_object(proof, entries=entries)
 
 
 def _write_out(step_map: StepMap) -> dict[str, Any]:

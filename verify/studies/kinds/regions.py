@@ -82,10 +82,8 @@ def need_flows(plan: Plan, scene: Scene) -> None:
 
 def _no_mean(scene: Scene, name: str, scheme: str) -> tuple[str, str]:
     hamiltonian = scene.exact_hamiltonian()
-    structure, evidence = (
-        hamiltonian.structure,
-        {AREA: "proved", SYMPLECTIC: "shown"}[hamiltonian.structure],
-    )
+    structure = hamiltonian.structure
+    evidence = {AREA: "proved", SYMPLECTIC: "shown"}[hamiltonian.structure]
     reason = f"{structure.identity} is {evidence}: {structure.accumulated} is exactly 0"
     if not step_map_of(hamiltonian, scheme).preserves_area:
         reason = (
@@ -110,19 +108,17 @@ def flow_tasks(scene: Scene, flow: RegionFlow) -> Iterator[FlowTask]:
         is_scheme = name != EXACT_FLOW
         preserves_area = not is_scheme or step_map_of(hamiltonian, name).preserves_area
         for steps in flow.counts:
-            yield FlowTask(
+            yield FlowTask.from_object(
+                flow,
                 **common,
                 map=name,
                 shape=shape,
-                step_size=flow.step_size,
                 t0=begin,
                 steps=steps,
-                digits=flow.digits,
                 mean_lambda=flow.mean_lambda and not preserves_area and carries_defect(hamiltonian),
                 # Hausdorff distances are of curves in the plane.
                 distance=is_scheme and flow.exact and hamiltonian.planar,
                 point=point,
-                plane=flow.plane,
             )
 
 

@@ -16,12 +16,7 @@ from verify.lockstep import Course, run_alone
 from verify.runs.requested_run import RequestedRun
 from verify.runs.task import RunTask
 from verify.scenes.frozen import Frozen
-from verify.scenes.results.separation import (
-    AnySeparation,
-    Separation,
-    SeparationInDegrees,
-    SeparationResult,
-)
+from verify.scenes.results import separation
 from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
 from verify.scenes.values import ExactNumber, StepSize
@@ -35,7 +30,7 @@ from verify.studies.separation.truncation_and_rounding import as_grid, separate_
 class SeparationTask(StartTask):
     """Split Λ of a float64 run into truncation and rounding."""
 
-    result: ClassVar[type[AnySeparation]] = SeparationResult
+    result: ClassVar[type[separation.AnySeparation]] = separation.SeparationResult
     runs: ClassVar[int] = 3
     """The number of runs of the chain, in wide numbers."""
     points: ClassVar[int] = Determinants.points
@@ -73,9 +68,11 @@ class SeparationTask(StartTask):
         arguments = self.other_fields("run")
         return separate_in_turn(self.exact_hamiltonian(), **arguments, run=run, keeper=keeper)
 
-    def compute(self, keeper: Keeper) -> AnySeparation:
+    def compute(self, keeper: Keeper) -> separation.AnySeparation:
         """Return the separation as a result."""
-        split: AnySeparation = run_alone(self._separate(keeper, self._requested_run(keeper)))
+        split: separation.AnySeparation = run_alone(
+            self._separate(keeper, self._requested_run(keeper))
+        )
         return split
 
     def compute_in_turn(self, keeper: Keeper) -> Course[dict[str, Frozen]]:
@@ -93,7 +90,7 @@ class SeparationTask(StartTask):
 class FormSeparationTask(SeparationTask):
     """Split W of a float64 run into truncation and rounding."""
 
-    result = SeparationInDegrees
+    result = separation.SeparationInDegrees
     # More than the plane's three: the runs beside float64 are done twice and carry matrices.
     runs = 8
     points = Matrices.points
@@ -171,7 +168,7 @@ def _collect(scene: Scene, results: Results) -> dict[str, Any]:
             for scheme in scene.schemes
             for grid in grids
             for row in _rows(scene, scheme, grid)
-            if (separations := results_of_tasks(Separation, row, results))
+            if (separations := results_of_tasks(separation.Separation, row, results))
         )
         for name, grids in (
             (split.own_key, _own_grids(scene)),

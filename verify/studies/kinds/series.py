@@ -16,11 +16,9 @@ from verify.studies.kinds.grid import observables_of
 def series_task(scene: Scene, scheme: str, series: PlottedSeries) -> RunTask:
     """Return the run of a `[[series]]`."""
     begin = start_arguments(series.initial_value, of_field=scene.field is not None)
-    return RunTask(
-        **scene.hamiltonian_fields(), **begin, scheme=scheme,
-        step_size=series.step_size, steps=series.count, t0=scene.t0,
-        arithmetic=series.arithmetic, digits=series.digits,
-        observables=observables_of(scene, None), points=series.points,
+    return RunTask.from_object(
+        series, **scene.hamiltonian_fields(), **begin, scheme=scheme, steps=series.count,
+        t0=scene.t0, observables=observables_of(scene, None),
     )  # fmt: skip
 
 

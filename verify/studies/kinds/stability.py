@@ -32,7 +32,6 @@ from verify.scenes.values import ExactNumber, StepSize
 
 # Costs are in float64 steps, and estimates.
 _RUN_COST = 40_000_000  # a verdict on one run, however short
-_BISECTION_COST = 3 * _RUN_COST
 _CELL_COST = _RUN_COST // 8  # a cell of a map: one short run judges most of them
 _MOTION_COST = 1_000_000  # a unit of time of the exact motion, n degrees of freedom, ω = 1
 _COST_OF_CELL_STEP = 4  # a step of a cell's orbit, with its neighbour's step and those with W
@@ -77,15 +76,11 @@ class LargestStepTask(_FromATime):
 
     result = LargestStepResult
     imports = ("verify.studies.stability.verdict_results",)
+    price = 3 * _RUN_COST
     kind: Literal["largest_step"] = "largest_step"
     time: ExactNumber
     energy_error: ExactNumber | None = None
     symplectic_defect: ExactNumber | None = None
-
-    @property
-    def cost(self) -> int:
-        """About the number of float64 steps that it is worth."""
-        return _BISECTION_COST
 
     def compute(self, keeper: Keeper) -> LargestStepResult:
         """Return the largest step size, with the smallest one that was too large."""
@@ -168,12 +163,7 @@ def stability_tasks(scene: Scene) -> Iterator[tuple[str, StabilityTask]]:
                         parts.append(f"z0 no. {k}")
                     steps = section.steps_for(h)
                     task = StabilityTask(
-                        **common,
-                        scheme=scheme,
-                        step_size=h,
-                        steps=steps,
-                        q=initial_value.q,
-                        p=initial_value.p,
+                        **common, **dict(initial_value), scheme=scheme, step_size=h, steps=steps
                     )
                     yield "/".join(filter(None, parts)), task
 
@@ -192,21 +182,14 @@ def _pair_with_schemes(
 def _tasks_over(scene: Scene) -> Iterator[tuple[Task, str]]:
     """Yield the tasks of largest steps and of several runs, each with its description."""
     for largest, common in _pair_with_schemes(scene, scene.largest_step):
-        yield LargestStepTask(
-            **common, time=largest.time, energy_error=largest.energy_error,
-            symplectic_defect=largest.symplectic_defect,
-        ), "the largest step with bounded motion"  # fmt: skip
+        yield LargestStepTask.from_object(largest, **common), "the largest step with bounded motion"
     for over, common in _pair_with_schemes(scene, scene.stability_map):
-        yield StabilityMapTask(
-            **common, parameter=over.parameter, values=over.values, step_sizes=over.step_sizes,
-            steps=over.steps,
-        ), f"stability over step size and {over.parameter}"  # fmt: skip
+        task = StabilityMapTask.from_object(over, **common)
+        yield task, f"stability over step size and {over.parameter}"
     for starts, common in _pair_with_schemes(scene, scene.orbit_map):
-        yield OrbitMapTask(
-            **common, axes=starts.axes, across=starts.across, upwards=starts.upwards,
-            step_size=starts.step_size, steps=starts.count,
-            beyond=starts.farthest(scene.exact_hamiltonian()),
-        ), f"orbits over {' and '.join(starts.axes)}"  # fmt: skip
+        beyond = starts.farthest(scene.exact_hamiltonian())
+        map_task = OrbitMapTask.from_object(starts, **common, steps=starts.count, beyond=beyond)
+        yield map_task, f"orbits over {' and '.join(starts.axes)}"
 
 
 @dataclass(frozen=True)

@@ -91,17 +91,13 @@ def work_precision_task(scene: Scene) -> WorkPrecisionTask:
     assert section is not None  # noqa: S101 - the caller's condition
     schemes, sizes = section.schemes or scene.schemes, sorted(section.step_sizes, reverse=True)
     peers, left_out = _peers(section.peers)
-    return WorkPrecisionTask(
+    return WorkPrecisionTask.from_object(
+        section,
         **scene.hamiltonian_fields(),
+        **dict(section.initial_value),
         schemes=schemes,
-        time=section.time,
         t0=scene.t0,
         step_sizes=tuple(sizes),
-        q=section.initial_value.q,
-        p=section.initial_value.p,
-        repeats=section.repeats,
-        number_systems=section.number_systems,
-        digits=section.digits,
         number_systems_scheme=section.number_systems_scheme or schemes[0],
         number_systems_step_size=section.number_systems_step_size or sizes[len(sizes) // 2],
         peers=peers,

@@ -173,10 +173,8 @@ def _enclose_directed(
     rows: Any, others: Any, at_least: float, rounding: float
 ) -> tuple[float, float]:
     near = np.empty((len(rows), 2), dtype=np.int64)
-    parts, nears = (
-        np.empty((_MAX_DIVISIONS + 2, 4)),
-        np.empty((_MAX_DIVISIONS + 2, 3), dtype=np.int64),
-    )
+    parts = np.empty((_MAX_DIVISIONS + 2, 4))
+    nears = np.empty((_MAX_DIVISIONS + 2, 3), dtype=np.int64)
     work = new_stack(), parts, nears
     low, high = _compile_loop()(rows, others, boxes(others), near, *work, at_least, rounding)
     return float(low), float(high)

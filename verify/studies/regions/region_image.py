@@ -32,21 +32,13 @@ from verify.prose import Number, Prose, prose, read_prose
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage
 from verify.scenes.shapes.outline import Shape
 from verify.structures import AREA, SYMPLECTIC
+from verify.studies.regions import point_carriers
 from verify.studies.regions.mean_lambda import find_middle, mean_over
 from verify.studies.regions.outline_images import (
     OutlineImage,
     build_outline,
     distance_from_exact,
     format_with_error,
-)
-from verify.studies.regions.point_carriers import (
-    QP_PLANE,
-    ExactFlowCarrier,
-    FloatCarrier,
-    RegionPlane,
-    SchemeCarrier,
-    WideCarrier,
-    smaller_than_one,
 )
 from verify.studies.regions.polyline import thin_for_drawing
 from verify.studies.regions.region_area import Goal, MeasuredArea, NoAreaError, Probe
@@ -72,7 +64,7 @@ class _Iterate:
     step_size: Fraction
     steps: int
     t0: Fraction
-    plane: RegionPlane
+    plane: point_carriers.RegionPlane
 
     @property
     def arguments(self) -> tuple[Hamiltonian, str, Fraction, int, Fraction]:
@@ -101,7 +93,7 @@ def carry(
     mean_lambda: bool,
     distance: bool,
     t0: Fraction | None = None,
-    plane: RegionPlane = QP_PLANE,
+    plane: point_carriers.RegionPlane = point_carriers.QP_PLANE,
 ) -> FlowImage:
     """Return the image of the shape by `steps` steps of the scheme `map_name`, or by EXACT_FLOW.
 
@@ -150,20 +142,20 @@ def _check_smooth(iterate: _Iterate) -> None:
 
 def _measure_outlines(
     iterate: _Iterate, shape: Shape, digits: int
-) -> tuple[list[OutlineImage], SchemeCarrier | ExactFlowCarrier]:
+) -> tuple[list[OutlineImage], point_carriers.SchemeCarrier | point_carriers.ExactFlowCarrier]:
     """Measure all outlines, in arithmetic fine enough for the region's change of area."""
-    smaller = smaller_than_one(shape.outlines[0])
+    smaller = point_carriers.smaller_than_one(shape.outlines[0])
     preserves_area = iterate.preserves_area
     plane = iterate.plane
     if iterate.map == EXACT_FLOW:
-        flow_carrier = ExactFlowCarrier(
+        flow_carrier = point_carriers.ExactFlowCarrier(
             iterate.hamiltonian, iterate.time, iterate.t0, smaller, plane
         )
         return _carry_all(shape, flow_carrier, _GOAL_IF_UNCHANGED), flow_carrier
     arguments = iterate.arguments
     if digits <= _FLOAT_DIGITS:
         with contextlib.suppress(NoAreaError):  # in float64 a tiny outline may be one point
-            floats = FloatCarrier(*arguments, smaller, plane)
+            floats = point_carriers.FloatCarrier(*arguments, smaller, plane)
             images = _carry_all(
                 shape, floats, _GOAL_IF_UNCHANGED if preserves_area else _GOAL_IF_CHANGED
             )
@@ -182,9 +174,9 @@ def _measure_outlines(
     for name in faster:
         # A fixed-point system may lack a function or the range; the last system has both.
         with contextlib.suppress(UnsupportedError, LeftRangeError):
-            wide = WideCarrier(*arguments, name, digits, smaller, plane)
+            wide = point_carriers.WideCarrier(*arguments, name, digits, smaller, plane)
             return _carry_all(shape, wide, goal), wide
-    wide = WideCarrier(*arguments, last, digits, smaller, plane)
+    wide = point_carriers.WideCarrier(*arguments, last, digits, smaller, plane)
     return _carry_all(shape, wide, goal), wide
 
 
@@ -197,7 +189,9 @@ def _goal_without_change(digits: int) -> Goal:
 
 
 def _carry_all(
-    shape: Shape, carrier: SchemeCarrier | ExactFlowCarrier, goal: Goal
+    shape: Shape,
+    carrier: point_carriers.SchemeCarrier | point_carriers.ExactFlowCarrier,
+    goal: Goal,
 ) -> list[OutlineImage]:
     goals = [goal, *[_GOAL_INSIDE] * (len(shape.outlines) - 1)]
     images = []
@@ -220,7 +214,9 @@ def _is_unresolved(region: MeasuredArea) -> bool:
 
 
 def _area_fields(
-    images: Sequence[OutlineImage], carrier: SchemeCarrier | ExactFlowCarrier, preserves_area: bool
+    images: Sequence[OutlineImage],
+    carrier: point_carriers.SchemeCarrier | point_carriers.ExactFlowCarrier,
+    preserves_area: bool,
 ) -> dict[str, Any]:
     region = images[0].measured
     problem = _describe_problem(region, preserves_area)

@@ -48,17 +48,9 @@ from verify.scenes.results.separation import SeparationResult
 from verify.scenes.results.separation_parts import Parts
 from verify.schemes import get
 from verify.schemes.maps.step_map import StepMap
+from verify.studies.separation import way
 from verify.studies.separation.chain import Entries, Links, exact_links, links_of
 from verify.studies.separation.mixed_run import marks_of
-from verify.studies.separation.way import (
-    FOLLOWED,
-    KernelLines,
-    MixedKernel,
-    Side,
-    State,
-    SteppedRun,
-    Way,
-)
 
 WORKING = frozenset({"lambda", "lambda_plain"})  # with these `verify run` steps in float64, too
 POINTS = 2048  # checkpoints of a run
@@ -73,7 +65,7 @@ _CLOSED_SUM = (
 
 
 @dataclass(frozen=True)
-class Determinants(Way):
+class Determinants(way.Way):
     """Λ = Π det J − 1 of a run in the plane."""
 
     count: int = 2
@@ -96,7 +88,9 @@ class Determinants(Way):
         uncompiled = replace(arithmetic, compile=lambda *_: lambda *_: ())
         return KernelWriter(step_map, uncompiled, observables, False, scaled=False).kernel()
 
-    def lines(self, narrow: Side, wide: Side | None, clocked: Side | None) -> KernelLines:
+    def lines(
+        self, narrow: way.Side, wide: way.Side | None, clocked: way.Side | None
+    ) -> way.KernelLines:
         start: dict[str, int] = {}
         inside = [f"f_det = {narrow.output('det')}", f"f_dj = {narrow.output('dj')}"]
         if wide:
@@ -119,11 +113,11 @@ class Determinants(Way):
                 *_CLOSED_SUM,
             ]
             start |= {"f_sum": 0, "f_rest": 0}
-        followed = tuple(name for name in FOLLOWED if f"w_{name}" in start)
-        return KernelLines(inside, start, followed, closed)
+        followed = tuple(name for name in way.FOLLOWED if f"w_{name}" in start)
+        return way.KernelLines(inside, start, followed, closed)
 
     def limits(
-        self, kernel: MixedKernel, arithmetic: Arithmetic, inputs: Mapping[str, float]
+        self, kernel: way.MixedKernel, arithmetic: Arithmetic, inputs: Mapping[str, float]
     ) -> list[SystemNumber]:
         """Return the limits of p, q and Λ; UnsupportedError if they start beyond them."""
         if not isinstance(kernel.wide, Kernel) or not kernel.limits:
@@ -137,13 +131,13 @@ class Determinants(Way):
 
     # -- reading its states -------------------------------------------------------------------
 
-    def read(self, state: State, name: str, arithmetic: Arithmetic) -> Entries:
+    def read(self, state: way.State, name: str, arithmetic: Arithmetic) -> Entries:
         return (arithmetic.exact(state[f"w_{name}"]),)
 
-    def plain(self, state: State) -> tuple[float, ...]:
+    def plain(self, state: way.State) -> tuple[float, ...]:
         return (state["f_plain"] - 1.0,)
 
-    def closed_form(self, state: State) -> tuple[float, ...]:
+    def closed_form(self, state: way.State) -> tuple[float, ...]:
         try:
             return (math.expm1(state["f_sum"] + state["f_rest"]),)
         except OverflowError:
@@ -151,7 +145,7 @@ class Determinants(Way):
 
     # -- error bounds -------------------------------------------------------------------------
 
-    def bounds(self, run: SteppedRun) -> Mapping[str, Fraction | None]:
+    def bounds(self, run: way.SteppedRun) -> Mapping[str, Fraction | None]:
         bounds_by_name: dict[str, Fraction | None] = {}
         for name in run.kernel.followed:
             # The clock's link has a wide state of its own, whose error is not counted.
@@ -164,7 +158,7 @@ class Determinants(Way):
             return dict.fromkeys(bounds_by_name)
         return bounds_by_name
 
-    def hidden_size(self, run: SteppedRun, name: str) -> Fraction:
+    def hidden_size(self, run: way.SteppedRun, name: str) -> Fraction:
         if run.arithmetic.absolute:
             return _unit(run.arithmetic)
         sizes = (abs(run.arithmetic.exact(state[f"w_{name}"])) for state in run.states)
@@ -203,7 +197,7 @@ class Determinants(Way):
         return link_digits + max(0, -magnitude(size)) + len(str(run.steps)) + 6
 
 
-def _check_range(wide: Side) -> None:
+def _check_range(wide: way.Side) -> None:
     """Raise UnsupportedError if an operation may leave a limited range.
 
     The state's limits alone must keep all operations within it.
@@ -232,7 +226,7 @@ def _accumulate_lines(name: str, factor: str, start: dict[str, int]) -> list[str
     ]
 
 
-def _error_of_delta_j(run: SteppedRun) -> Fraction | None:
+def _error_of_delta_j(run: way.SteppedRun) -> Fraction | None:
     """Return B, the error of one wide ΔJ over the region that the float64 states have visited."""
     with working_precision(PRECISION_BITS):
         # A float64 becomes a fixed-point number, which cuts it below its last binary place.

@@ -57,17 +57,7 @@ from verify.hamiltonians.run_domain import check_times, point_of
 from verify.lockstep import Course, run_alone
 from verify.runs.requested_run import RequestedRun, check
 from verify.runs.run_start import Start
-from verify.scenes.results.separation import (
-    WAYS,
-    AnyGrid,
-    AnySeparation,
-    CrossoverResult,
-    Separation,
-    SeparationGrid,
-    SeparationGridInDegrees,
-    SeparationInDegrees,
-    SeparationResult,
-)
+from verify.scenes.results import separation
 from verify.scenes.results.separation_parts import AnyEvaluation
 from verify.schemes import canonical
 from verify.studies.separation.growth_fits import find_crossover
@@ -77,14 +67,14 @@ from verify.studies.separation.result import Split, evaluation
 from verify.studies.separation.tangent import tangent_growth
 
 Progress = Callable[[int], None]  # called with the number of steps just done; 3 N are expected
-_GRIDS: dict[type[Separation], type[AnyGrid]] = {
-    SeparationResult: SeparationGrid,
-    SeparationInDegrees: SeparationGridInDegrees,
+_GRIDS: dict[type[separation.Separation], type[separation.AnyGrid]] = {
+    separation.SeparationResult: separation.SeparationGrid,
+    separation.SeparationInDegrees: separation.SeparationGridInDegrees,
 }
 RUNS = 3  # runs of N steps: two in place of exact arithmetic, one in float64 with it beside
 
 
-def separate(hamiltonian: Hamiltonian, scheme: str, **arguments: Any) -> AnySeparation:
+def separate(hamiltonian: Hamiltonian, scheme: str, **arguments: Any) -> separation.AnySeparation:
     """Return the result of `separate_in_turn`, which takes the same arguments, done alone."""
     return run_alone(separate_in_turn(hamiltonian, scheme, **arguments))
 
@@ -103,7 +93,7 @@ def separate_in_turn(
     progress: Progress | None = None,
     keeper: Keeper = NOTHING,
     run: RequestedRun | None = None,
-) -> Course[AnySeparation]:
+) -> Course[separation.AnySeparation]:
     """Split Λ of a float64 run of `steps` steps from (q, p) into truncation and rounding.
 
     In n degrees of freedom, where q and p are lists, it splits W.
@@ -163,7 +153,7 @@ def separate_grid(
     time: Number | None = None,
     digits: int = 17,
     **arguments: Any,
-) -> AnyGrid:
+) -> separation.AnyGrid:
     """Return `separate` for several step sizes, over N = `steps` steps or N = ⌊time / h⌋ each.
 
     Raises InputError as `separate` does, if a step size occurs twice, and unless exactly one of
@@ -182,22 +172,23 @@ def separate_grid(
     )
 
 
-def as_grid(points: Sequence[Separation]) -> AnyGrid:
+def as_grid(points: Sequence[separation.Separation]) -> separation.AnyGrid:
     """Join separations for several step sizes, with the crossover of each way to evaluate them."""
     crossovers = {
-        way: find_crossing((x.step_size, getattr(x, way)) for x in points) for way in WAYS
+        way: find_crossing((x.step_size, getattr(x, way)) for x in points)
+        for way in separation.WAYS
     }
     return _GRIDS[type(points[0])].model_validate({"points": tuple(points), **crossovers})
 
 
-def find_crossing(ways: Iterable[tuple[str, AnyEvaluation | None]]) -> CrossoverResult:
+def find_crossing(ways: Iterable[tuple[str, AnyEvaluation | None]]) -> separation.CrossoverResult:
     """Find where rounding overtakes truncation, from each step size's evaluation by one way."""
     parts = ((h, way.largest["truncation"], way.largest["total"]) for h, way in ways if way)
     # The greatest sizes along the run stand for it: a last value may be small by chance.
     overtaking = find_crossover([(Fraction(h), Fraction(x), Fraction(y)) for h, x, y in parts])
     size = None if overtaking.step_size is None else f"{overtaking.step_size:.3e}"
     ends = overtaking.bracket and (text(overtaking.bracket[0]), text(overtaking.bracket[1]))
-    return CrossoverResult(step_size=size, bracket=ends, reason=overtaking.reason)
+    return separation.CrossoverResult(step_size=size, bracket=ends, reason=overtaking.reason)
 
 
 def count_steps(

@@ -108,10 +108,8 @@ def _find_limit(
 ) -> NearbyLimit | None:
     """Return the end for exact coefficients; None if none near the printed ones close the gaps."""
     # In a gap narrower than `_NARROW` |tr M| may only touch 2 with exact coefficients.
-    nearby_order, gaps = (
-        sizes(scheme.order + _EXTRA_ORDERS),
-        _stability_of_scheme(scheme, _NARROW).gaps,
-    )
+    nearby_order = sizes(scheme.order + _EXTRA_ORDERS)
+    gaps = _stability_of_scheme(scheme, _NARROW).gaps
     nearby = _close_gaps(table, nearby_order.order if nearby_order else 0, gaps)
     if nearby is None or nearby.distance > WITHIN:
         return None

@@ -29,12 +29,7 @@ from verify.studies.work_precision.ladder import (
     SchemeLadder,
     build_failed_point,
 )
-from verify.studies.work_precision.peers import (
-    Answer,
-    InitialValueProblem,
-    PeerError,
-    Solver,
-)
+from verify.studies.work_precision.peers import Answer, InitialValueProblem, PeerError, Solver
 from verify.studies.work_precision.problem import SHOWN, ReferenceProblem, size
 from verify.studies.work_precision.timing import (
     RunTime,

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from functools import cache
 from itertools import repeat
 from statistics import median
-from typing import Literal
 
 Call = Callable[[], object]
 _LEAST_SECONDS = 0.004  # of one timing
@@ -32,13 +31,10 @@ class RunTime:
 @cache
 def choose_clock() -> tuple[Callable[[], int], str]:
     """Return the clock in nanoseconds, and its description."""
-    if hasattr(time, "thread_time_ns") and _resolution("thread_time") < _COARSEST_RESOLUTION:
+    has_clock = hasattr(time, "thread_time_ns")
+    if has_clock and time.get_clock_info("thread_time").resolution < _COARSEST_RESOLUTION:
         return time.thread_time_ns, "processor time of the thread"
     return time.perf_counter_ns, "time on the clock"
-
-
-def _resolution(name: Literal["thread_time"]) -> float:
-    return time.get_clock_info(name).resolution
 
 
 def time_interleaved(calls: Sequence[Call], rounds: int) -> list[RunTime]:

@@ -211,10 +211,8 @@ def _log_points(line: WorkLine, quantity: str, scale: str) -> list[LogPoint]:
 def _overlap(lines: Sequence[list[LogPoint]]) -> LogPoint | None:
     if not all(lines):
         return None
-    first, last = (
-        max(log_points[0][0] for log_points in lines),
-        min(log_points[-1][0] for log_points in lines),
-    )
+    first = max(log_points[0][0] for log_points in lines)
+    last = min(log_points[-1][0] for log_points in lines)
     return (first, last) if first < last else None
 
 

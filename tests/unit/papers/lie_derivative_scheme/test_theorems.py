@@ -15,7 +15,7 @@ from verify.claims.claims_file import load_claims
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.papers import check_theorem, names
-from verify.papers.argument import Argument, Check, proof, step, vanishes
+from verify.papers.argument import Argument, Check, _read_argument, vanishes
 from verify.papers.differential_polynomials import DifferentialFlow, flow_of_every_hamiltonian
 from verify.papers.exact_maps import Areas, RationalPoint, value
 from verify.papers.lie_derivative_scheme import (
@@ -151,7 +151,7 @@ def test_an_unknown_theorem_is_named() -> None:
 
 
 def argued(*checks: Check) -> Argument:
-    return proof("because", [step("so it is", each) for each in checks])
+    return _read_argument(Verdict.PROVED, "because\n\n- so it is [checks]", checks=checks)
 
 
 def test_an_argument_with_a_failed_check_or_none_is_undecided_and_has_no_proof() -> None:

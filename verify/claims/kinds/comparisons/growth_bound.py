@@ -18,6 +18,7 @@ from verify.scenes.values import ExactNumber
 class GrowthBoundClaim(RunClaim):
     """A bound of |Λ| that grows with the length T of the run."""
 
+    compares = ("lambda",)
     obstacle = "its constants are of the orbits of its own scene"
     kind: Literal["growth_bound"]
     eta: Annotated[int, Field(ge=1, le=20, strict=True)]
@@ -33,9 +34,6 @@ class GrowthBoundClaim(RunClaim):
         if self.c1 == self.c2 == 0:
             raise InputError("c1, c2", "0", "give one that is not 0; `bounded` takes `bound = 0`")
         return self
-
-    def quantities(self) -> tuple[str, ...]:
-        return ("lambda",)
 
     def compare(self, findings: Findings) -> ClaimResult:
         details: list[list[str]] = [["initial value", "h", "T", "|Λ|", "bound"]]

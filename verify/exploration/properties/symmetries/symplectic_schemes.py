@@ -11,16 +11,8 @@ from operator import attrgetter
 
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.flint_precision import working_precision
+from verify.exploration import reference_steps
 from verify.exploration.property import Violation, only_if
-from verify.exploration.reference_steps import (
-    BITS,
-    ball_steps,
-    defect,
-    end_of,
-    entries,
-    jacobian_of_run,
-    largest,
-)
 from verify.exploration.sample import Sample
 from verify.scenes.observables import carries
 from verify.structures import AREA, SYMPLECTIC
@@ -40,29 +32,29 @@ def holds(sample: Sample) -> None:
     if sample.step_map.implicit:
         _check_by_runs(sample)
         return
-    after = ball_steps(sample.step_map, sample.start, 1)[-1].sharp()
-    with working_precision(BITS):
-        form = defect(after.step_jacobian)
-    if not all(x.contains(0) for x in entries(form)):
-        raise Violation(f"S is not 0; its greatest |entry| is {largest(form).str(6)}")
+    after = reference_steps.ball_steps(sample.step_map, sample.start, 1)[-1].sharp()
+    with working_precision(reference_steps.BITS):
+        form = reference_steps.defect(after.step_jacobian)
+    if not all(x.contains(0) for x in reference_steps.entries(form)):
+        raise Violation(
+            f"S is not 0; its greatest |entry| is {reference_steps.largest(form).str(6)}"
+        )
 
 
 def _check_by_runs(sample: Sample) -> None:
     only_if(sample.hamiltonian.planar or (sample.is_turn(one_in=8) and sample.short))
-    jacobian, error = jacobian_of_run(sample)
+    jacobian, error = reference_steps.jacobian_of_run(sample)
     with working_precision(_BITS_OF_DIFFERENCES):
-        greatest = largest(defect(jacobian))
+        greatest = reference_steps.largest(reference_steps.defect(jacobian))
         is_wrong = greatest > error
     if is_wrong:
         raise Violation(f"W is {greatest.str(6)} after two steps, by differences of runs")
     if carries(sample.hamiltonian, "lambda_plain"):
-        end = end_of(sample, "lambda_plain")
-        change, small = (
-            end["lambda_plain"],
-            _PRODUCT_TOLERANCE * (1 + sum(abs(end[n]) for n in sample.point)),
-        )
+        end = reference_steps.end_of(sample, "lambda_plain")
+        change = end["lambda_plain"]
+        small = _PRODUCT_TOLERANCE * (1 + sum(abs(end[n]) for n in sample.point))
         if abs(change) > small:
             # Twice as many digits decide if the equations were not solved, or if the map is wrong.
-            accurate_end = end_of(sample, times=2)
+            accurate_end = reference_steps.end_of(sample, times=2)
             only_if(all(abs(x - end[name]) <= small for name, x in accurate_end.items()))
             raise Violation(f"Π det J − 1 is {decimal(change, 6)} after two steps")

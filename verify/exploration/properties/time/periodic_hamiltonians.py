@@ -16,16 +16,8 @@ from verify.algebra.identities.polynomials import Generator
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
+from verify.exploration import reference_steps
 from verify.exploration.property import Violation, only_if, require_value
-from verify.exploration.reference_steps import (
-    BITS,
-    BallState,
-    ball_steps,
-    is_narrow,
-    must_overlap,
-    overlap,
-    take_step,
-)
 from verify.exploration.sample import Sample
 from verify.functions.function import CIRCLE
 
@@ -39,22 +31,24 @@ def holds(sample: Sample) -> None:
     ring, slopes = sample.slopes
     frequency = require_value(_frequency(ring, slopes))
     # The states after 0 steps: the start alone, as balls.
-    start = ball_steps(sample.step_map, sample.start, 0)[0]
-    with working_precision(BITS):
+    start = reference_steps.ball_steps(sample.step_map, sample.start, 0)[0]
+    with working_precision(reference_steps.BITS):
         period = 2 * flint.arb.pi() / rational_ball(abs(frequency))
         later = replace(start, point=start.point | {"t": start.point["t"] + period})
         for step_size in (rational_ball(sample.step_size), period):
-            _must_overlap(*(take_step(sample.step_map, x, step_size) for x in (start, later)))
+            _must_overlap(
+                *(reference_steps.take_step(sample.step_map, x, step_size) for x in (start, later))
+            )
 
 
-def _must_overlap(state: BallState, later_state: BallState) -> None:
+def _must_overlap(state: reference_steps.BallState, later_state: reference_steps.BallState) -> None:
     """Raise Violation if two steps one period apart are disjoint, and Silent if a ball is wide."""
     for name, x in state.point.items():
         later_x = later_state.point[name]
-        only_if(is_narrow(x) and is_narrow(later_x))
+        only_if(reference_steps.is_narrow(x) and reference_steps.is_narrow(later_x))
         if name != "t":
-            must_overlap(f"a period later {name}' is", later_x, x)
-    if not overlap(state.step_jacobian, later_state.step_jacobian):
+            reference_steps.must_overlap(f"a period later {name}' is", later_x, x)
+    if not reference_steps.overlap(state.step_jacobian, later_state.step_jacobian):
         raise Violation("a period later J is another")
 
 

@@ -207,6 +207,6 @@ SECTION = ReportSection(
     view=_view,
     entries=lambda view: (ContentsEntry(card.anchor, card.title) for card in view.cards),
     pictures=_pictures,
-    terms=lambda _: legend.SEPARATED | legend.RAN,
+    terms=lambda _: legend.terms_of("separation") | legend.terms_of_runs(),
     speaks=_lead_sentence_and_tiles,
 )

@@ -182,12 +182,8 @@ def _caption(flow: FlowResult, grid: "PanelGrid") -> str:
 
 
 def _terms(views: Sequence[FlowView]) -> dict[str, Markup]:
-    terms_by_view = (
-        vocabulary_of([region.result for region in view.regions]).terms for view in views
-    )
-    return {
-        term: meaning for section_terms in terms_by_view for term, meaning in section_terms.items()
-    }
+    vocabularies = (vocabulary_of([region.result for region in view.regions]) for view in views)
+    return {term: meaning for words in vocabularies for term, meaning in words.terms.items()}
 
 
 def _pictures(view: FlowView) -> Iterator[Picture]:

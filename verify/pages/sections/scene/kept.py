@@ -7,7 +7,6 @@ a scene that asks for energy.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import chain
 
 from markupsafe import Markup
 
@@ -145,15 +144,6 @@ def _plot(runs: Sequence[RunResult], label: str, name: str) -> Plot:
     )
 
 
-_TERMS = {
-    "Kept": Markup(
-        "A step z ↦ z′ keeps a structure if its defect, such as H(z′) − H(z), is 0 for all z. If "
-        "not, it begins with a power of h. It <em>telescopes</em> if its leading term is the "
-        "derivative X·G of a function G along the flow: then this term does not add up along an "
-        "orbit, and is the difference of G at the two ends."
-    )
-}
-
 SECTION = ReportSection(
     order=5,
     title="What is kept",
@@ -161,6 +151,7 @@ SECTION = ReportSection(
     view=_view,
     pictures=lambda view: [Picture((5,), plot) for plot in view.plots],
     terms=lambda views: (
-        _TERMS | (legend.RAN if any(chain.from_iterable(view.plots for view in views)) else {})
+        legend.terms_of("kept")
+        | (legend.terms_of_runs() if any(view.plots for view in views) else {})
     ),
 )

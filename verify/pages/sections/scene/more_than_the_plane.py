@@ -134,5 +134,5 @@ SECTION = ReportSection(
     title="More than the plane",
     anchor="beyond",
     view=_view,
-    terms=lambda _: legend.FORM_TERMS,
+    terms=lambda _: legend.terms_of("form"),
 )

@@ -3,13 +3,12 @@
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
-from markupsafe import Markup
-
 from verify.arithmetic.exact import short
 from verify.pages.figures.captioned_plot import captioned_plot
 from verify.pages.sections.orbits_view import OrbitsView, pictures
 from verify.pages.sections.section import ReportSection
 from verify.pages.sections.table_rows import TableRow, by_key
+from verify.pages.text.legend import terms_of
 from verify.pages.text.typography import IS, join_and, number, step, whole
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.stability import OrbitKind, OrbitMapResult
@@ -38,7 +37,8 @@ def _orbits_view(maps: Sequence[OrbitMapResult], anchor: str) -> OrbitsView:
     counts = "; ".join(f"{m.scheme}: {_counts(m)}" for m in maps)
     texts = [f"{name}{IS}{number(x)}" for name, x in _fixed_values(first_map)]
     fixed = f", with {', '.join(texts)}" if texts else ""
-    line_note = " Grey lines: the same energy H." if _has_energies(first_map) else ""
+    has_energies = all(x is not None for row in first_map.energies for x in row)
+    line_note = " Grey lines: the same energy H." if has_energies else ""
     return OrbitsView(
         anchor=anchor,
         title=title,
@@ -68,10 +68,6 @@ def _fixed_values(orbit_map: OrbitMapResult) -> Iterator[tuple[str, str]]:
             for k, x in enumerate(values, start=1):
                 if f"{letter}{k}" not in orbit_map.axes:
                     yield f"{letter}{k}", x
-
-
-def _has_energies(orbit_map: OrbitMapResult) -> bool:
-    return all(x is not None for row in orbit_map.energies for x in row)
 
 
 def _energy_finding(orbit_map: OrbitMapResult) -> str:
@@ -113,24 +109,11 @@ def _row(orbit_map: OrbitMapResult, kind: OrbitKind) -> TableRow:
     return TableRow(orbit_map.scheme, entries)
 
 
-_TERMS = {
-    "Orbits over two initial values": Markup(
-        "<em>Regular</em>: a neighbour parts no faster than a power of t, over the time that was "
-        "looked at. <em>Sensitive</em>: it parts exponentially, as in chaos or near an unstable "
-        "orbit. <em>Undecided</em>: the time does not tell, or H is not defined there. "
-        "<em>Leaves</em>: a coordinate goes beyond the bound. All of it is of the scheme’s own map "
-        "in float64, measured: where an orbit is sensitive, rounding decides when it leaves, and "
-        "W, the symplectic defect of all steps, grows like the square of the tangent map, which is "
-        "not the scheme’s fault."
-    )
-}
-
-
 SECTION = ReportSection(
     order=31,
     title="Orbits over two initial values",
     anchor="orbit-map",
     view=_view,
     pictures=lambda views: pictures(views, 2),
-    terms=lambda _: _TERMS,
+    terms=lambda _: terms_of("orbit-map"),
 )

@@ -2,35 +2,24 @@
 
 from fractions import Fraction
 
-from markupsafe import Markup
-
 from verify.pages.figures.captioned_plot import captioned_plot
-from verify.pages.sections.orbits_view import (
-    OrbitsView,
-    describe_escape,
-    describe_partly_known,
-    pictures,
-    title_from,
-)
+from verify.pages.sections import orbits_view
 from verify.pages.sections.section import ReportSection
 from verify.pages.sections.table_rows import TableRow
+from verify.pages.text.legend import terms_of
 from verify.pages.text.typography import IS, join_and, map_name, number, step, whole
 from verify.scenes.results.orbit_points import MapSections, PoincareOrbit, PoincareResult
 from verify.scenes.results.report import SceneResult
 
 
-def _view(scene: SceneResult, anchor: str) -> tuple[OrbitsView, ...]:
+def _view(scene: SceneResult, anchor: str) -> tuple[orbits_view.OrbitsView, ...]:
     return tuple(
         _orbits_view(result, f"passes-{k}-of-{anchor}") for k, result in enumerate(scene.poincare)
     )
 
 
-def _orbits_view(result: PoincareResult, anchor: str) -> OrbitsView:
-    from verify.pages.figures.orbit_points_figure import (
-        count_drawn_looks,
-        draw_passes,
-        select_points,
-    )
+def _orbits_view(result: PoincareResult, anchor: str) -> orbits_view.OrbitsView:
+    from verify.pages.figures import orbit_points_figure
 
     direction = "upwards" if result.rising else "downwards"
     orbits = whole(len(result.sections[0].orbits))
@@ -41,25 +30,25 @@ def _orbits_view(result: PoincareResult, anchor: str) -> OrbitsView:
         f"until t{IS}{number(result.time)}; h{IS}{step(result.step_size)}"
     )
     passes = max(len(o.points) for section in result.sections for o in section.orbits)
-    drawn_count = count_drawn_looks(result.sections)
+    drawn_count = orbit_points_figure.count_drawn_looks(result.sections)
     omissions = f" The first {whole(drawn_count)} passes are drawn." * (drawn_count < passes)
-    outside_count = select_points(result)[1]
+    outside_count = orbit_points_figure.select_points(result)[1]
     if outside_count:
         omissions += (
             f" Points far out, by orbits that escape, are not drawn: {whole(outside_count)}."
         )
     finding = " ".join(map(_finding, result.sections))
-    return OrbitsView(
+    return orbits_view.OrbitsView(
         anchor=anchor,
-        title=title_from(result.source, title),
+        title=orbits_view.title_from(result.source, title),
         finding=finding,
         rows=tuple(
-            TableRow(section.map, _cells(o), describe_escape(o))
+            TableRow(section.map, _cells(o), orbits_view.describe_escape(o))
             for section in result.sections
             for o in section.orbits
         ),
         plot=captioned_plot(
-            lambda: draw_passes(result),
+            lambda: orbit_points_figure.draw_passes(result),
             name=f"points-of-{anchor}",
             lead=lead,
             label=f"{lead}. {finding}",
@@ -82,7 +71,7 @@ def _finding(sections: MapSections) -> str:
     accuracy = f"within {number(error)} (estimated, by a second reckoning)"
     if not partly_known:
         return f"{sentence} every point is known {accuracy}."
-    part = describe_partly_known(orbits, partly_known, "passes")
+    part = orbits_view.describe_partly_known(orbits, partly_known, "passes")
     return f"{sentence} {part}; what is known is so {accuracy}."
 
 
@@ -92,22 +81,11 @@ def _cells(orbit: PoincareOrbit) -> tuple[str, ...]:
     return q, p, number(orbit.energy), *counts, number(orbit.error)
 
 
-_TERMS = {
-    "Poincaré section": Markup(
-        "The states of an orbit each time it passes a surface, here that of a coordinate’s value, "
-        "in the same direction. In two degrees of freedom two of their coordinates tell them, at a "
-        "given energy: they are points of one closed curve where a second quantity is kept, and a "
-        "sea of points where the motion is chaotic. A scheme’s orbit passes in the step from z to "
-        "Φ_h(z) at that Φ_θ(z) which lies on the surface."
-    )
-}
-
-
 SECTION = ReportSection(
     order=26,
     title="Where orbits pass a surface",
     anchor="poincare",
     view=_view,
-    pictures=lambda views: pictures(views, 3),
-    terms=lambda _: _TERMS,
+    pictures=lambda views: orbits_view.pictures(views, 3),
+    terms=lambda _: terms_of("poincare"),
 )

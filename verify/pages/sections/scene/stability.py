@@ -14,16 +14,10 @@ from verify.pages.sections.table_rows import TableRow, by_key, describe_excerpt,
 from verify.pages.text.legend import counts_of
 from verify.pages.text.prose_markup import prose
 from verify.pages.text.typography import coordinates, join_and, number, step, whole
+from verify.scenes.results import stability
 from verify.scenes.results.report import SceneResult
-from verify.scenes.results.stability import (
-    KINDS,
-    Kind,
-    LargestStepResult,
-    StabilityMapResult,
-    StabilityResult,
-)
 
-MEANINGS: dict[Kind, str] = {
+MEANINGS: dict[stability.Kind, str] = {
     "stable": "stays within the exact orbit’s bounds, and no drift of its energy is seen",
     "drifts": "stays within them, but its energy moves on in one direction",
     "unstable: scheme": "leaves them with 40 and with 80 digits too: the scheme’s doing",
@@ -46,8 +40,8 @@ class StabilityView:
     """
 
     finding: tuple[str, ...]
-    kinds: tuple[Kind, ...]
-    runs: tuple[tuple[str, str, StabilityResult], ...]
+    kinds: tuple[stability.Kind, ...]
+    runs: tuple[tuple[str, str, stability.StabilityResult], ...]
     count: int
     excerpt: str
     largest: tuple[TableRow, ...]
@@ -65,7 +59,7 @@ def _view(scene: SceneResult, anchor: str) -> StabilityView | None:
     (visible,) = select_members([runs], _is_not_stable)
     return StabilityView(
         finding=tuple(_finding(runs, steps)),
-        kinds=tuple(kind for kind in KINDS if kind in occurring),
+        kinds=tuple(kind for kind in stability.KINDS if kind in occurring),
         runs=tuple((_name(run), step(short(Fraction(run.step_size))), run) for run in visible),
         count=len(runs),
         excerpt=describe_excerpt(len(runs), len(visible), sum(map(_is_not_stable, runs))),
@@ -75,11 +69,13 @@ def _view(scene: SceneResult, anchor: str) -> StabilityView | None:
     )
 
 
-def _is_not_stable(run: StabilityResult) -> bool:
+def _is_not_stable(run: stability.StabilityResult) -> bool:
     return run.kind != "stable"
 
 
-def _finding(runs: Sequence[StabilityResult], steps: Sequence[LargestStepResult]) -> Iterator[str]:
+def _finding(
+    runs: Sequence[stability.StabilityResult], steps: Sequence[stability.LargestStepResult]
+) -> Iterator[str]:
     if runs:
         counts = Counter(run.kind for run in runs)
         yield f"Of {whole(len(runs))} runs: {counts_of(counts)}."
@@ -108,14 +104,14 @@ def _finding(runs: Sequence[StabilityResult], steps: Sequence[LargestStepResult]
         )
 
 
-def _name(run: StabilityResult) -> str:
+def _name(run: stability.StabilityResult) -> str:
     """Return the run's id without scene, scheme and step size: the section and initial value."""
     _, *parts = run.id.split("/")
     implied = (run.scheme, f"h={short(Fraction(run.step_size))}")
     return ", ".join(part for part in parts if part not in implied)
 
 
-def _row_of_largest_step(result: LargestStepResult) -> TableRow:
+def _row_of_largest_step(result: stability.LargestStepResult) -> TableRow:
     linear, ratio = "no limit", "–"
     if result.linear is not None:
         linear = _four_digits(result.linear) if Fraction(result.linear) else "none is stable"
@@ -127,7 +123,7 @@ def _row_of_largest_step(result: LargestStepResult) -> TableRow:
     )
 
 
-def _describe_requirements(result: LargestStepResult) -> str:
+def _describe_requirements(result: stability.LargestStepResult) -> str:
     """Return the limits on the motion besides that it stays bounded, after a comma; "" for none."""
     requirements = (("energy error", result.energy_error), ("|W|", result.symplectic_defect))
     limits = [f"{quantity} ≤ {number(limit)}" for quantity, limit in requirements if limit]
@@ -138,12 +134,12 @@ def _four_digits(x: str) -> str:
     return number(plain(Fraction(x), 4))
 
 
-def _describe_time(steps: Sequence[LargestStepResult]) -> str:
+def _describe_time(steps: Sequence[stability.LargestStepResult]) -> str:
     times = dict.fromkeys(number(s.time) for s in steps)
     return f"until t = {join_and(list(times))}" if times else ""
 
 
-def _plots(maps: Sequence[StabilityMapResult], anchor: str) -> Iterator[tuple[int, Plot]]:
+def _plots(maps: Sequence[stability.StabilityMapResult], anchor: str) -> Iterator[tuple[int, Plot]]:
     """Yield a plot for the maps of all schemes over the same steps and values.
 
     The drawing, and with it matplotlib, is imported only if there is a map.
@@ -165,7 +161,7 @@ def _plots(maps: Sequence[StabilityMapResult], anchor: str) -> Iterator[tuple[in
         yield len({kind for stability_map in group for kind in stability_map.counted()}), plot
 
 
-def _caption(maps: Sequence[StabilityMapResult], counts: str) -> str:
+def _caption(maps: Sequence[stability.StabilityMapResult], counts: str) -> str:
     """Return the caption; it has the counts of a single map, but not those of several."""
     first_map = maps[0]
     limit_note = ""

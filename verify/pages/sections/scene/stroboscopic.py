@@ -2,29 +2,22 @@
 
 from collections.abc import Iterator
 
-from markupsafe import Markup
-
 from verify.pages.figures.captioned_plot import captioned_plot
-from verify.pages.sections.orbits_view import (
-    OrbitsView,
-    describe_escape,
-    describe_partly_known,
-    pictures,
-    title_from,
-)
+from verify.pages.sections import orbits_view
 from verify.pages.sections.section import ReportSection
 from verify.pages.sections.table_rows import TableRow
+from verify.pages.text.legend import terms_of
 from verify.pages.text.typography import IS, join_and, number, step, whole
 from verify.scenes.results.orbit_points import StroboscopicResult
 from verify.scenes.results.report import SceneResult
 
 
-def _view(scene: SceneResult, anchor: str) -> tuple[OrbitsView, ...]:
+def _view(scene: SceneResult, anchor: str) -> tuple[orbits_view.OrbitsView, ...]:
     results = enumerate(scene.stroboscopic)
     return tuple(_orbits_view(result, f"strobe-{k}-of-{anchor}") for k, result in results)
 
 
-def _orbits_view(result: StroboscopicResult, anchor: str) -> OrbitsView:
+def _orbits_view(result: StroboscopicResult, anchor: str) -> orbits_view.OrbitsView:
     from verify.pages.figures.orbit_points_figure import count_drawn_looks, draw_periods
 
     schemes = join_and(section.scheme for section in result.sections)
@@ -41,9 +34,9 @@ def _orbits_view(result: StroboscopicResult, anchor: str) -> OrbitsView:
         drawn_count < result.periods
     )
     finding = " ".join(_finding(result))
-    return OrbitsView(
+    return orbits_view.OrbitsView(
         anchor=anchor,
-        title=title_from(result.source, title),
+        title=orbits_view.title_from(result.source, title),
         finding=finding,
         rows=tuple(_rows(result)),
         plot=captioned_plot(
@@ -64,7 +57,8 @@ def _finding(result: StroboscopicResult) -> Iterator[str]:
         partly_known = [o for o in section.orbits if o.known < len(o.points) - 1]
         source = f"{section.scheme}: with {whole(section.digits)} digits in {section.arithmetic}"
         if partly_known:
-            yield f"{source} {describe_partly_known(section.orbits, partly_known, 'periods')}."
+            part = orbits_view.describe_partly_known(section.orbits, partly_known, "periods")
+            yield f"{source} {part}."
         else:
             yield f"{source} every orbit is known to its end."
         known_in_float64 = min(o.in_float64 for o in section.orbits)
@@ -80,16 +74,7 @@ def _rows(result: StroboscopicResult) -> Iterator[TableRow]:
                 number(orbit.q), number(orbit.p), whole(period_count), whole(orbit.known),
                 whole(orbit.in_float64),
             )  # fmt: skip
-            yield TableRow(section.scheme, cells, describe_escape(orbit))
-
-
-_TERMS = {
-    "Stroboscopic section": Markup(
-        "The states of an orbit once in each period of H, all at the same phase of the drive: "
-        "points of one closed curve where the motion is regular, and a sea of points where it is "
-        "chaotic."
-    )
-}
+            yield TableRow(section.scheme, cells, orbits_view.describe_escape(orbit))
 
 
 SECTION = ReportSection(
@@ -97,8 +82,8 @@ SECTION = ReportSection(
     title="Once in each period",
     anchor="stroboscopic",
     view=_view,
-    pictures=lambda views: pictures(views, 3),
-    terms=lambda _: _TERMS,
+    pictures=lambda views: orbits_view.pictures(views, 3),
+    terms=lambda _: terms_of("stroboscopic"),
     shows="stroboscopic",
     matching_plots=lambda views, label: ((x.plot, x.finding) for x in views if x.source == label),
 )

@@ -11,16 +11,9 @@ from verify.pages.sections.section import Picture, ReportSection
 from verify.pages.sections.table_rows import Group, TableRow
 from verify.pages.text import legend
 from verify.pages.text.typography import NBSP, number, start, step, whole
+from verify.scenes.results import work_precision
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.report import SceneResult
-from verify.scenes.results.work_precision import (
-    CostResult,
-    SlopeResult,
-    SystemPoint,
-    WorkLine,
-    WorkPoint,
-    WorkPrecisionResult,
-)
 from verify.structures import AREA, SYMPLECTIC
 
 _HEADS = {AREA: ("order of Λ", "Λ, plain"), SYMPLECTIC: ("order of max |W|", "max |W|")}
@@ -30,7 +23,7 @@ _UNIT_SPACE = re.compile(r"(\d) ")
 
 @dataclass(frozen=True)
 class WorkPrecisionView:
-    result: WorkPrecisionResult
+    result: work_precision.WorkPrecisionResult
     heads: tuple[str, str]  # those of two columns: the order of the defect, and a second defect
     finding: tuple[str, ...]
     plots: tuple[Plot, ...]
@@ -64,7 +57,7 @@ def _view(scene: SceneResult, anchor: str) -> WorkPrecisionView | None:
 # -- sentences ------------------------------------------------------------------------------------
 
 
-def _finding(result: WorkPrecisionResult) -> Iterator[str]:
+def _finding(result: work_precision.WorkPrecisionResult) -> Iterator[str]:
     yield (
         f"The error is that of the float64 state after T = {number(result.time)} from "
         f"{start(result)}, "
@@ -85,7 +78,7 @@ def _finding(result: WorkPrecisionResult) -> Iterator[str]:
         yield f"{whole(failed)} {'run' if failed == 1 else 'runs'} left the range of float64."
 
 
-def _describe_provenance(result: WorkPrecisionResult) -> str:
+def _describe_provenance(result: work_precision.WorkPrecisionResult) -> str:
     return (
         f"Reference: {result.reference}, its bound estimated by a second evaluation with more "
         "digits. "
@@ -101,7 +94,7 @@ def _describe_provenance(result: WorkPrecisionResult) -> str:
 # -- tables ---------------------------------------------------------------------------------------
 
 
-def _scheme_row(line: WorkLine) -> TableRow:
+def _scheme_row(line: work_precision.WorkLine) -> TableRow:
     cells = (
         "–" if line.order is None else str(line.order),
         _format_slope(line.error_slope),
@@ -112,13 +105,13 @@ def _scheme_row(line: WorkLine) -> TableRow:
     return TableRow(line.name, cells)
 
 
-def _format_slope(slope: SlopeResult) -> str:
+def _format_slope(slope: work_precision.SlopeResult) -> str:
     if slope.value is None:
         return "–"
     return f"{float(slope.value):.2f}{NBSP}±{NBSP}{float(slope.standard_error or 0):.2f}"
 
 
-def _operations(cost: CostResult | None) -> tuple[str, str | Markup]:
+def _operations(cost: work_precision.CostResult | None) -> tuple[str, str | Markup]:
     if cost is None:
         return "–", "–"
     operations = _UNIT_SPACE.sub(rf"\1{NBSP}", cost.text)
@@ -130,13 +123,13 @@ def _operations(cost: CostResult | None) -> tuple[str, str | Markup]:
     return operations, Markup(", ").join(gradient)
 
 
-def _group(line: WorkLine) -> Group:
+def _group(line: work_precision.WorkLine) -> Group:
     about = "compiled in " if not line.peer else "made ready in "
     about += f"{_seconds(line.compile_seconds)} s"
     return Group(line.name, [_row(point) for point in line.points], about)
 
 
-def _row(point: WorkPoint) -> TableRow:
+def _row(point: work_precision.WorkPoint) -> TableRow:
     label = step(point.step_size) if point.step_size else number(point.tolerance or "")
     steps = "–" if point.steps is None else whole(point.steps)
     if point.limited_by == "failed":
@@ -149,12 +142,12 @@ def _row(point: WorkPoint) -> TableRow:
     return TableRow(label, (steps, *cells))
 
 
-def _second_defect(point: WorkPoint) -> Value | None:
+def _second_defect(point: work_precision.WorkPoint) -> Value | None:
     """Return Λ by the plain product; in n degrees of freedom max |W|."""
     return point.symplectic_defect or point.lam_plain
 
 
-def _system_row(point: SystemPoint) -> TableRow:
+def _system_row(point: work_precision.SystemPoint) -> TableRow:
     cells = (
         str(point.digits),
         point.certified or f"– ({point.reason})",
@@ -169,18 +162,11 @@ def _seconds(seconds: float | None) -> str:
     return "–" if seconds is None else number(f"{seconds:.2e}")
 
 
-_TERMS = {
-    "Limited by rounding": Markup(
-        "The float64 run differs from the same steps in exact arithmetic by a part of its error "
-        "that counts: smaller steps make it no better. Such points are hollow, and no slope is "
-        "fitted to them."
-    )
-}
 SECTION = ReportSection(
     order=10,
     title="Error against run time",
     anchor="work",
     view=_view,
     pictures=lambda view: [Picture((5,), plot) for plot in view.plots],
-    terms=lambda _: _TERMS | legend.RAN,
+    terms=lambda _: legend.terms_of("work-precision") | legend.terms_of_runs(),
 )

@@ -6,14 +6,7 @@ from verify.scenes.results.report import SceneResult
 
 
 def _view(scene: SceneResult, proof: ProofResult, _: str) -> EveryResult | None:
-    return next(
-        (
-            proof_for_every_h
-            for proof_for_every_h in scene.every
-            if proof_for_every_h.scheme == proof.scheme
-        ),
-        None,
-    )
+    return next((result for result in scene.every if result.scheme == proof.scheme), None)
 
 
 SECTION = ReportSection(order=20, view=_view)

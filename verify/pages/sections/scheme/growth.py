@@ -6,17 +6,10 @@ from decimal import Decimal
 from fractions import Fraction
 from math import isfinite
 
-from markupsafe import Markup
-
 from verify.pages.figures.captioned_plot import Plot, captioned_plot, lg, round_to_few_digits
+from verify.pages.sections import table_rows
 from verify.pages.sections.section import ReportSection
-from verify.pages.sections.table_rows import (
-    MOST_ROWS,
-    Group,
-    TableRow,
-    describe_excerpt,
-    select_members,
-)
+from verify.pages.text.legend import terms_of
 from verify.pages.text.typography import NBSP, between, join_and, number, start, step, whole
 from verify.pages.text.typography import power_of_h as _h
 from verify.scenes.results.growth import AverageResult, GrowthLawResult, PredictionResult
@@ -29,7 +22,7 @@ class GrowthView:
     law: AverageResult
     finding: tuple[str, ...]
     plots: tuple[Plot, ...]
-    groups: tuple[Group, ...]
+    groups: tuple[table_rows.Group, ...]
     count: int
     excerpt: str  # a sentence on the rows that are shown, if not all are
     provenance: str
@@ -45,7 +38,7 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> GrowthView | N
         plots=tuple(_plots(laws, anchor)),
         groups=tuple(_groups(laws)),
         count=(count := sum(len(growth.predictions) for growth in laws)),
-        excerpt=describe_excerpt(count, min(count, MOST_ROWS)),
+        excerpt=table_rows.describe_excerpt(count, min(count, table_rows.MOST_ROWS)),
         provenance=_describe_provenance(laws),
     )
 
@@ -190,12 +183,12 @@ def _drawable_predictions(law: GrowthLawResult) -> tuple[PredictionResult, ...]:
 # -- table ----------------------------------------------------------------------------------------
 
 
-def _groups(laws: Sequence[GrowthLawResult]) -> Iterator[Group]:
+def _groups(laws: Sequence[GrowthLawResult]) -> Iterator[table_rows.Group]:
     for growth, rows in zip(
-        laws, select_members(growth.predictions for growth in laws), strict=True
+        laws, table_rows.select_members(growth.predictions for growth in laws), strict=True
     ):
         if rows or not growth.predictions:
-            yield Group(start(growth.law), [_row(p) for p in rows], _about(growth.law))
+            yield table_rows.Group(start(growth.law), [_row(p) for p in rows], _about(growth.law))
 
 
 def _about(law: AverageResult) -> str:
@@ -208,18 +201,12 @@ def _about(law: AverageResult) -> str:
     return f"{law.orbit}{period}, ⟨g⟩ = {rate}"
 
 
-def _row(p: PredictionResult) -> TableRow:
+def _row(p: PredictionResult) -> table_rows.TableRow:
     values = (p.boundary, p.secular, p.predicted, p.measured, p.difference)
     cells = (round_to_few_digits(v.value) if v else "–" for v in values)
-    return TableRow(step(p.step_size), (whole(p.steps), *cells))
+    return table_rows.TableRow(step(p.step_size), (whole(p.steps), *cells))
 
 
-_TERMS = {
-    "Growth law": Markup(
-        "log(1 + Λ) as a bounded part, a secular part that grows with T, and a remainder of proved "
-        "order. X is the derivative along the exact flow; [F] is F at the end of the run minus F "
-        "at its start; X G is the leading coefficient of ΔJ; ⟨g⟩ is the time average of g along "
-        "the exact orbit, and B the bounded rest, X B = g − ⟨g⟩."
-    )
-}
-SECTION = ReportSection(order=60, title="Growth law of Λ", view=_view, terms=lambda _: _TERMS)
+SECTION = ReportSection(
+    order=60, title="Growth law of Λ", view=_view, terms=lambda _: terms_of("growth")
+)

@@ -7,14 +7,8 @@ from markupsafe import Markup
 
 from verify import observables
 from verify.pages.figures.captioned_plot import describe_runs
+from verify.pages.sections import table_rows
 from verify.pages.sections.section import ReportSection
-from verify.pages.sections.table_rows import (
-    Group,
-    TableRow,
-    by_key,
-    describe_excerpt,
-    select_members,
-)
 from verify.pages.text import legend
 from verify.pages.text.typography import number, start, value, whole
 from verify.scenes.frozen import OfScheme
@@ -27,7 +21,7 @@ class RunTable:
     """The runs of one scheme: a column for each observable, a group for each initial value."""
 
     columns: tuple[str, ...]
-    groups: tuple[Group, ...]
+    groups: tuple[table_rows.Group, ...]
     count: int
     excerpt: str  # a sentence on the rows that are shown, if not all are
     provenance: str
@@ -44,12 +38,12 @@ def _view(scene: SceneResult, proof: OfScheme, _: str) -> RunTable | None:
     if not names and all(run.status == "finished" for run in runs):
         return None
     failed = [run for run in runs if _has_failed(run)]
-    (visible,) = select_members([runs], _has_failed)
+    (visible,) = table_rows.select_members([runs], _has_failed)
     return RunTable(
         columns=tuple(columns[n] for n in names) or ("outcome",),
         groups=tuple(_groups(visible, names)),
         count=len(runs),
-        excerpt=describe_excerpt(len(runs), len(visible), len(failed)),
+        excerpt=table_rows.describe_excerpt(len(runs), len(visible), len(failed)),
         provenance=describe_runs(runs),
         certainty=_describe_certainty(runs),
         notes=(*_describe_fallbacks(runs), *_describe_exits(runs)),
@@ -84,7 +78,7 @@ def _describe_certainty(runs: Sequence[RunResult]) -> str:
 def _describe_fallbacks(runs: Sequence[RunResult]) -> Iterator[str]:
     """Yield sentences on runs in another number system than the requested one, with the reasons."""
     fallback_runs = [run for run in runs if run.fallback]
-    groups = by_key(fallback_runs, lambda run: (run.arithmetic, run.fallback))
+    groups = table_rows.by_key(fallback_runs, lambda run: (run.arithmetic, run.fallback))
     for (arithmetic, reason), group in groups.items():
         sizes = ", ".join(dict.fromkeys(number(run.step_size) for run in group))
         count = "One run" if len(group) == 1 else f"{whole(len(group))} runs"
@@ -97,12 +91,12 @@ def _describe_exits(runs: Sequence[RunResult]) -> Iterator[str]:
         yield f"From {start(run)}, h = {number(run.step_size)}: {run.left_domain}"
 
 
-def _groups(runs: Sequence[RunResult], names: Sequence[str]) -> Iterator[Group]:
-    for label, group in by_key(runs, start).items():
-        yield Group(label, [_row(run, names) for run in group])
+def _groups(runs: Sequence[RunResult], names: Sequence[str]) -> Iterator[table_rows.Group]:
+    for label, group in table_rows.by_key(runs, start).items():
+        yield table_rows.Group(label, [_row(run, names) for run in group])
 
 
-def _row(run: RunResult, names: Sequence[str]) -> TableRow:
+def _row(run: RunResult, names: Sequence[str]) -> table_rows.TableRow:
     failure = ""
     if run.status == "left range":
         failure = f"left the range of {run.arithmetic}"
@@ -111,7 +105,11 @@ def _row(run: RunResult, names: Sequence[str]) -> TableRow:
     elif run.status == "unresolved":
         failure = f"no digit could be confirmed: {run.error_method}"
     cells = (value(run.values[n]) if n in run.values else Markup("–") for n in names)
-    return TableRow(run.step_size, (whole(run.steps), *(() if failure else cells)), failure)
+    return table_rows.TableRow(
+        run.step_size, (whole(run.steps), *(() if failure else cells)), failure
+    )
 
 
-SECTION = ReportSection(order=80, view=_view, terms=lambda _: legend.RAN, takes_field=True)
+SECTION = ReportSection(
+    order=80, view=_view, terms=lambda _: legend.terms_of_runs(), takes_field=True
+)

@@ -31,16 +31,10 @@ from verify.pages.sections.table_rows import Group, TableRow
 from verify.pages.text import legend
 from verify.pages.text.prose_markup import prose
 from verify.pages.text.typography import NBSP, join_and, number, start, step, whole
+from verify.scenes.results import separation
 from verify.scenes.results.bounded_value import largest
 from verify.scenes.results.proof_result import ProofResult
 from verify.scenes.results.report import SceneResult
-from verify.scenes.results.separation import (
-    WAYS,
-    SeparationGrid,
-    SeparationGridInDegrees,
-    SeparationInDegrees,
-    SeparationResult,
-)
 from verify.scenes.results.separation_parts import AnyEvaluation, GrowthResult
 from verify.structures import AREA, SYMPLECTIC, CanonicalForm
 
@@ -64,10 +58,8 @@ class SeparationView:
 
 
 def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeparationView | None:
-    plain_grids, crossover_grids = (
-        grids_of(scene.separations, proof),
-        grids_of(scene.crossovers, proof),
-    )
+    plain_grids = grids_of(scene.separations, proof)
+    crossover_grids = grids_of(scene.crossovers, proof)
     if not plain_grids and not crossover_grids:
         return _view_of_form(scene, proof)
     grid_points = [point for grid in plain_grids or crossover_grids for point in grid.points]
@@ -90,10 +82,8 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeparationView
 
 def _view_of_form(scene: SceneResult, proof: ProofResult) -> SeparationView | None:
     """Return the view of W, in n degrees of freedom."""
-    plain_grids, crossover_grids = (
-        grids_of(scene.form_separations, proof),
-        grids_of(scene.form_crossovers, proof),
-    )
+    plain_grids = grids_of(scene.form_separations, proof)
+    crossover_grids = grids_of(scene.form_crossovers, proof)
     grids = [*plain_grids, *crossover_grids]
     if not grids:
         return None
@@ -106,7 +96,7 @@ def _view_of_form(scene: SceneResult, proof: ProofResult) -> SeparationView | No
     )
 
 
-def _describe_longest_run(points: Sequence[SeparationInDegrees]) -> Iterator[Markup]:
+def _describe_longest_run(points: Sequence[separation.SeparationInDegrees]) -> Iterator[Markup]:
     """Yield a sentence on the longest run: how W grew, and how the tangent map did."""
     separated = [point for point in points if point.tangent]
     if not separated:
@@ -118,8 +108,8 @@ def _describe_longest_run(points: Sequence[SeparationInDegrees]) -> Iterator[Mar
     yield run_text + prose(longest.tangent.meaning) + Markup(".")
 
 
-def _describe_crossover(grid: SeparationGridInDegrees) -> str:
-    ways = [(label, getattr(grid, way)) for way, label in WAYS.items()]
+def _describe_crossover(grid: separation.SeparationGridInDegrees) -> str:
+    ways = [(label, getattr(grid, way)) for way, label in separation.WAYS.items()]
     crossovers = (
         f"{label}: {f'h* ≈ {x.step_size}' if x.step_size else x.reason}" for label, x in ways
     )
@@ -129,7 +119,7 @@ def _describe_crossover(grid: SeparationGridInDegrees) -> str:
 # -- figures --------------------------------------------------------------------------------------
 
 
-def _plots(grids: Sequence[SeparationGrid], name: str) -> Iterator[Plot]:
+def _plots(grids: Sequence[separation.SeparationGrid], name: str) -> Iterator[Plot]:
     """Yield a figure for each grid over which truncation and rounding can be drawn."""
     for index, grid in enumerate(grids):
         from verify.pages.figures import step_size_figures as figure
@@ -165,10 +155,10 @@ def _greatest_rounding(evaluation: AnyEvaluation) -> Markup:
     return known_digits(abs(largest(evaluation.parts.total)))
 
 
-def _growth_row(point: SeparationResult) -> TableRow | None:
+def _growth_row(point: separation.SeparationResult) -> TableRow | None:
     if point.plain is None:
         return None
-    ways = map(point.ways.get, WAYS)
+    ways = map(point.ways.get, separation.WAYS)
     cells = (
         _format_growth(evaluation.growth["total"]) if evaluation else Markup("–")
         for evaluation in ways
@@ -183,7 +173,7 @@ def _format_growth(growth: GrowthResult) -> Markup:
     return Markup('{} <span class="muted beside">{}</span>').format(exponent, growth.name)
 
 
-def _motion_row(point: SeparationInDegrees) -> TableRow | None:
+def _motion_row(point: separation.SeparationInDegrees) -> TableRow | None:
     tangent, closed_form = point.tangent, point.closed_form
     if tangent is None or closed_form is None:
         return None
@@ -204,26 +194,17 @@ def _format_law(exponent: str | None, name: str) -> str:
 
 
 _CAUSES = {"motion": "the motion’s", "scheme": "the scheme’s", "undecided": "whose, undecided"}
-_CROSSOVER_TERMS = {
-    "Crossover h*": Markup(
-        "The step size below which rounding is larger than truncation, interpolated in logarithms "
-        "between the two step sizes that bracket it. Smaller steps than h* make Λ no better."
-    )
-}
 _TERMS = {
-    AREA: legend.SEPARATED | _CROSSOVER_TERMS | legend.RAN,
-    SYMPLECTIC: {"W": legend.FORM_TERMS["W"]} | legend.FORM_SEPARATION_TERMS | legend.RAN,
+    AREA: legend.terms_of("separation") | legend.terms_of("crossover"),
+    SYMPLECTIC: {"W": legend.terms_of("form")["W"]} | legend.terms_of("separation-of-form"),
 }
 
 
 def _terms(views: Sequence[SeparationView]) -> Mapping[str, Markup]:
-    structures = {view.structure for view in views}
-    return {
-        k: x
-        for structure, structure_terms in _TERMS.items()
-        if structure in structures
-        for k, x in structure_terms.items()
-    }
+    terms: dict[str, Markup] = {}
+    for structure in dict.fromkeys(view.structure for view in views):
+        terms |= _TERMS[structure]
+    return terms | legend.terms_of_runs()
 
 
 SECTION = ReportSection(

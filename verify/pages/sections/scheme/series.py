@@ -103,7 +103,7 @@ SECTION = ReportSection(
     view=_view,
     takes_field=True,
     pictures=lambda view: [Picture((4,), plot) for plot, _ in view],
-    terms=lambda _: legend.RAN,
+    terms=lambda _: legend.terms_of_runs(),
     shows="series",
     matching_plots=lambda view, label: ((plot, "") for plot, source in view if source == label),
 )

@@ -118,7 +118,7 @@ SECTION = ReportSection(
     view=_view,
     takes_field=True,
     pictures=lambda plots: [Picture((0,), plots[0])],
-    terms=lambda _: legend.RAN,
+    terms=lambda _: legend.terms_of_runs(),
     shows="runs",
     matching_plots=lambda plots, _: ((plot, "") for plot in plots),
 )

@@ -6,5 +6,5 @@ from verify.pages.text import legend
 SECTION = ReportSection(
     order=15,
     view=lambda _, proof, __: proof if proof.form else None,
-    terms=lambda _: legend.FORM_TERMS,
+    terms=lambda _: legend.terms_of("form"),
 )

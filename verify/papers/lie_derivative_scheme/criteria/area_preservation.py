@@ -9,13 +9,14 @@ from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import text
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, Check, proof, refutation, same, step
+from verify.papers.argument import Argument, ArgumentTexts, Check, same
 from verify.papers.exact_maps import map_from_texts
 from verify.papers.lie_derivative_scheme import families
 from verify.papers.lie_derivative_scheme.examples import duffing_step
-from verify.proof.assistant.shipped_theory import ShippedTheorem
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
+
+_TEXTS = ArgumentTexts(__file__)
 
 _H = Fraction(1, 10)
 TRIANGULAR = "p**3/6 + q"  # det J = 1, and the step has an inverse in closed form
@@ -70,27 +71,7 @@ def _check_regions(formula: str = TRIANGULAR) -> list[Check]:
 
 def area_definition(formula: str = TRIANGULAR) -> Argument:
     """Prove that area preservation, the same area for each region's image, is decided by det J."""
-    return proof(
-        "the area of every region on which a continuously differentiable map is one-to-one stays "
-        "as it is if and only if |det J| = 1; for lieη with small h det J > 0, so that det J − 1 "
-        "measures the change, as in Eq. 14",
-        [
-            step(
-                "By the change of variables, for every region U on which Φ is one-to-one, "
-                "``area Φ(U) = ∫_U |det J| dp dq``. So |det J| = 1 everywhere gives equal areas.",
-                tried=_check_regions(formula),
-            ),
-            step(
-                "If |det J| ≠ 1 at one point, it is on one side of 1 in a small disc around it, on "
-                "which Φ is one-to-one where det J ≠ 0, and the disc’s area changes (where det J = "
-                "0 it shrinks).",
-            ),
-            step(
-                "For lieη det J = 1 + O(`h^(η+1)`) is positive for small h.",
-                ShippedTheorem("Theorems", "determinant_of_lie_in_plane"),
-            ),
-        ],
-    )
+    return _TEXTS.proof("area_definition", check_regions=_check_regions(formula))
 
 
 def area_definition_flow(factor: int = 2) -> Argument:
@@ -109,23 +90,12 @@ def area_definition_flow(factor: int = 2) -> Argument:
         shear.det() == 1 and commutator != sympy.zeros(2, 2),
         f"`{commutator[0, 0]}`, `{commutator[0, 1]}`, `{commutator[1, 0]}`, `{commutator[1, 1]}`",
     )
-    return refutation(
-        f"for H = (p² + q²)/2 the scaling z ↦ {factor}z leaves the flow unchanged and multiplies "
-        f"areas by {factor**2}, while the shear (p, q) ↦ (p, q + p) changes the flow and no area",
-        [
-            step(
-                "The flow of H = (p² + q²)/2 turns the plane, and every scaling commutes with it, "
-                "whatever it does to areas.",
-                scales,
-            ),
-            step(
-                "The shear ``(p, q) ↦ (p, q + p)`` has det J = 1 and does not commute with it.",
-                shears,
-            ),
-        ],
-        setting="That a mapping ψ leaves the phase flow φ unchanged would say ψ∘φₜ = φₜ∘ψ for all "
-        "t (or ψ∘φₜ = φₜ, which only the identity does).",
-        remark="Area preservation and an unchanged flow are independent of each other.",
+    return _TEXTS.refutation(
+        "area_definition_flow",
+        scales=scales,
+        shears=shears,
+        factor=str(factor),
+        square=str(factor**2),
     )
 
 
@@ -134,37 +104,12 @@ def area_definition_flow(factor: int = 2) -> Argument:
 
 def criterion_1(formula: str = TRIANGULAR) -> Argument:
     """Prove that det J = 1 gives equal areas, for regions on which the step is one-to-one."""
-    return proof(
-        "the area of Φ(U) is the integral of det J over U for every region U on which the step is "
-        "one-to-one, and lieη is so on any bounded region once h is small enough; for a polynomial "
-        "H for which lie2 has det J = 1, on the whole plane",
-        [
-            step(
-                "By the change of variables, where Φ is one-to-one on U and det J = 1, "
-                "``area Φ(U) = ∫_U |det J| dp dq = area U``.",
-                tried=_check_regions(formula),
-            ),
-            step(
-                "lieη is Φ(z) = z + hψ(z), ψ with a Lipschitz constant L on a ball that holds U, "
-                "for all h ≤ h₀. If hL < 1, then ``|Φ(z) − Φ(w)| ≥ (1 − hL) |z − w|``, and Φ is "
-                "one-to-one on U.",
-            ),
-            step(
-                "A polynomial H for which lie2 has det J = 1 is F(ℓ) + m or F(ℓ + m²) with linear "
-                "ℓ, m (see the claim on the classification).",
-            ),
-            step(
-                "In the first case the step takes ℓ to ℓ plus a constant, and moves p and q by "
-                "functions of ℓ: it is one-to-one.",
-                families.moves_by_a_constant(),
-                _inverse(lie_map(Hamiltonian.parse(formula), 2)),
-            ),
-            step(
-                "In the second case lie2 is the flow itself, which is one-to-one.",
-                families.exact_flow(),
-            ),
-        ],
-        remark="In general equal areas are those of images counted as often as they are covered.",
+    return _TEXTS.proof(
+        "criterion_1",
+        check_regions=_check_regions(formula),
+        moves_by_a_constant=families.moves_by_a_constant(),
+        inverse=_inverse(lie_map(Hamiltonian.parse(formula), 2)),
+        exact_flow=families.exact_flow(),
     )
 
 
@@ -210,22 +155,6 @@ def criterion_1_any_map(formulas: Sequence[str] = FOLDED) -> Argument:
         before == 2 * after,
         f"`{before}` and `{after}`",
     )
-    return refutation(
-        "(r, θ) ↦ (r/√2, 2θ) has det J = 1 away from the origin and covers its image twice: the "
-        "annulus 1 ≤ r ≤ 2 of area 3π goes to that of area 3π/2; a determinant says nothing of how "
-        "often a point is hit",
-        [
-            step(
-                "In the coordinates I = r²/2 and θ, in which areas are dI dθ, the map is "
-                "``I ↦ I/2, θ ↦ 2θ``, so its determinant is 1.",
-                preserves,
-            ),
-            step("It takes z and −z to the same point.", covers),
-            step(
-                "The annulus 1 ≤ r ≤ 2, of area 3π, goes onto ``1/√2 ≤ r ≤ √2``, of area 3π/2.",
-                halves,
-            ),
-        ],
-        remark="It is no lieη, which is near the identity; Criterion 1 speaks of that algorithm "
-        "alone, so that this is a limit of the criterion, not an error of it.",
+    return _TEXTS.refutation(
+        "criterion_1_any_map", preserves=preserves, covers=covers, halves=halves
     )

@@ -7,7 +7,7 @@ criterion 4 is Λ = o(1), as h → 0.
 from collections.abc import Sequence
 from fractions import Fraction
 
-from verify.papers.argument import NUMBERS, Argument, Check, Step, proof, refutation, step
+from verify.papers.argument import NUMBERS, Argument, ArgumentTexts, Check, Step
 from verify.papers.elementary_identities import compensated_changes, mean_of_fourth_powers
 from verify.papers.exact_maps import Areas
 from verify.papers.lie_derivative_scheme.examples import (
@@ -20,12 +20,8 @@ from verify.papers.lie_derivative_scheme.examples import (
     shrinks_to,
     turns_to_and_fro,
 )
-from verify.proof.assistant.shipped_theory import ShippedTheorem
 
-SETTING = """Fix T, let h = T/N, and write `x_k` = `ΔJ_k`, k = 0 … N − 1, m = max |`x_k`|.
-Criterion 2 is m = o(h), criterion 3 is MSE = (1/N) Σ `x_k²` = o(h), criterion 4 is Λ = Π (1 +
-`x_k`) − 1 = o(1), h → 0."""
-BY_MANY_STEPS = ShippedTheorem("Theorems", "error_over_many_steps")
+_TEXTS = ArgumentTexts(__file__)
 
 
 def inequalities_of(example: ExampleMap) -> Check:
@@ -55,71 +51,30 @@ def inequalities_hold(areas: Areas) -> bool:
 
 def criterion_2_implies_3(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
     """Prove that criterion 2 is sufficient for criterion 3."""
-    return proof(
-        "MSE ≤ (max |`ΔJ_k`|)², so criterion 2 gives even MSE = o(h²); “higher-order "
-        "infinitesimal” must be meant uniformly in k, else it fails",
-        [
-            step(
-                "A mean is at most the greatest of its terms: "
-                "``MSE = (1/N) Σ_{k} x_k^2 ≤ m^2 = o(h^2)``, more than criterion 3 asks for.",
-                ShippedTheorem("Sums", "sum_of_less"),
-                tried=[inequalities_of(FRICTION), inequalities_of(not_uniform)],
-            ),
-            step(
-                "Criterion 2 must be read uniformly in k, as its maximum over [0, T]: for the map "
-                "p' = p(1 + q²), q' = q + h from (0, 0) one has `ΔJ_k` = (kh)² = O(h²) for each "
-                "fixed k, but MSE → T⁴/5.",
-                not_uniform.changes(),
-                mean_of_fourth_powers(),
-                not_uniform.check(),
-            ),
-            step(
-                "For a scheme whose step depends smoothly on (p, q, h) the uniform reading is no "
-                "restriction: if ΔJ = o(h) at every point of a compact set, then its Taylor "
-                "coefficients of h⁰ and h¹ vanish on it, and ΔJ = O(h²) uniformly.",
-            ),
-            step(
-                "The converse is false: MSE = o(h), and criterion 2 fails, for p' = p − h(q + p), "
-                "q' = q + hp, where ``ΔJ = −h + h^2``.",
-                FRICTION.changes(),
-                FRICTION.check(),
-            ),
-        ],
-        setting=SETTING,
+    return _TEXTS.proof(
+        "criterion_2_implies_3",
+        inequalities_of_friction=inequalities_of(FRICTION),
+        inequalities_of_not_uniform=inequalities_of(not_uniform),
+        not_uniform_changes=not_uniform.changes(),
+        mean_of_fourth_powers=mean_of_fourth_powers(),
+        not_uniform_check=not_uniform.check(),
+        friction_changes=FRICTION.changes(),
+        friction_check=FRICTION.check(),
     )
 
 
 def criterion_2_implies_4(friction: ExampleMap = FRICTION) -> Argument:
     """Prove that criterion 2, uniformly in k, is sufficient for criterion 4."""
-    return proof(_TWO_IMPLIES_FOUR, _two_implies_four(friction), setting=SETTING)
-
-
-_TWO_IMPLIES_FOUR = "criterion 2 implies criterion 4, by |Λ| ≤ exp(T max|`ΔJ_k`|/h) − 1"
+    return _TEXTS.proof("criterion_2_implies_4", two_implies_four=_two_implies_four(friction))
 
 
 def _two_implies_four(friction: ExampleMap) -> list[Step]:
-    return [
-        step(
-            "Criterion 2 implies criterion 4: ``|Λ| ≤ e^(Nm) − 1 = e^(T m/h) − 1 → 0``.",
-            BY_MANY_STEPS,
-        ),
-        step(
-            "For all real `x_k`, more precisely, ``|Π_{k} (1 + x_k) − 1| ≤ e^(Σ_k |x_k|) − 1``.",
-            ShippedTheorem("Product", "product_near_one_by_sum"),
-            tried=[inequalities_of(friction)],
-        ),
-    ]
+    return _TEXTS.steps("_two_implies_four", inequalities_of=inequalities_of(friction))
 
 
 def criterion_4_and_2(friction: ExampleMap = FRICTION) -> Argument:
     """Refute that 4 and 2 do not imply each other: 2, read uniformly in k, implies 4."""
-    return refutation(
-        _TWO_IMPLIES_FOUR,
-        _two_implies_four(friction),
-        setting=SETTING,
-        remark="The paper’s own scheme is smooth in (p, q, h), so that criterion 2 holds for each "
-        "k only where it holds uniformly: for that scheme 2 implies 4.",
-    )
+    return _TEXTS.refutation("criterion_4_and_2", two_implies_four=_two_implies_four(friction))
 
 
 def criterion_4_and_3(
@@ -127,55 +82,17 @@ def criterion_4_and_3(
     alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
     """Prove that neither of criteria 3 and 4 implies the other."""
-    return proof(
-        "criterion 3 does not imply criterion 4 (an oscillator with friction has MSE = O(h²) and "
-        "Λ → `e^(−T)` − 1), nor does 4 imply 3 (p' = −p (1 − √h q)/(1 + √h q), q' = −q)",
-        [
-            step(
-                "MSE = o(h) does not imply criterion 4, nor does MSE = O(h²). The explicit Euler "
-                "step of an oscillator with friction, p' = p − h(q + p), q' = q + hp, has ΔJ = −h "
-                "+ h² at every point, so ``MSE = h^2(1 − h)^2 = o(h)``, and ``Λ = (1 − h + "
-                "h^2)^(T/h) − 1 → e^(−T) − 1``: criterion 3 calls a map nearly area-preserving "
-                "that shrinks every area to a fraction `e^(−T)`.",
-                *shrinking(friction),
-            ),
-            step(
-                "In the other direction criterion 4 does not imply 3: for p' = −p (1 − √h q)/(1 + "
-                "√h q), q' = −q from q = 1, det J is (1 − √h)/(1 + √h) and its reciprocal in turn, "
-                "so Λ is 0 or −2√h/(1 + √h), which tends to 0, while MSE > 4h for even N.",
-                *to_and_fro(alternating),
-            ),
-        ],
-        setting=SETTING,
-        remark="By Cauchy and Schwarz Σ |`x_k`| ≤ N √MSE = T √MSE/h, so |Λ| ≤ exp(T √MSE/h) − 1: "
-        "MSE = o(h²) does imply criterion 4, and this is the right scale for criterion 3.",
+    return _TEXTS.proof(
+        "criterion_4_and_3", shrinking=shrinking(friction), to_and_fro=to_and_fro(alternating)
     )
 
 
 def right_criterion_3(friction: ExampleMap = FRICTION) -> Argument:
     """Prove that MSE = o(h²), and not MSE = o(h), is sufficient for criterion 4."""
-    return proof(
-        "MSE = o(h²) implies criterion 4, by |Λ| ≤ exp(T √MSE/h) − 1; MSE = o(h), and even MSE = "
-        "O(h²), does not",
-        [
-            step(
-                "By Cauchy and Schwarz ``(Σ_k |x_k|)^2 ≤ N^2 MSE``, so Σ |`x_k`| ≤ N √MSE = T "
-                "√MSE/h.",
-                tried=[inequalities_of(friction)],
-            ),
-            step(
-                "``|Π_{k} (1 + x_k) − 1| ≤ e^(Σ_k |x_k|) − 1``, which tends to 0 if √MSE = o(h).",
-                ShippedTheorem("Product", "product_near_one_by_sum"),
-            ),
-            step(
-                "For an oscillator with friction, p' = p − h(q + p), q' = q + hp, MSE = O(h²), and "
-                "Λ → `e^(−T)` − 1.",
-                *shrinking(friction),
-            ),
-        ],
-        setting=SETTING,
-        remark="All three criteria hold for every smoothly consistent scheme: it is the order of "
-        "ΔJ that tells schemes apart.",
+    return _TEXTS.proof(
+        "right_criterion_3",
+        inequalities_of=inequalities_of(friction),
+        shrinking=shrinking(friction),
     )
 
 
@@ -188,39 +105,13 @@ def criterion_4_against_2(
     small = Check(
         "0 < Λ < h for the compensated map", all(between), f"{len(between)} step sizes", NUMBERS
     )
-    return refutation(
-        "criterion 2 implies criterion 4 and not the other way round, so 4 is the weaker one",
-        [
-            step(
-                "Criterion 2 implies 4: ``|Λ| ≤ e^(T m/h) − 1 → 0``.",
-                BY_MANY_STEPS,
-            ),
-            step(
-                "4 does not imply 2, for a global number can vanish by cancellation. It does so "
-                "for a smooth map near the identity: p' = p(1 + h(1/2 − q)), q' = q + h from (0, "
-                "0) on [0, 1] has `ΔJ_k` = h(1/2 − kh), hence max |`ΔJ_k`| = h/2, which is not "
-                "o(h).",
-                compensated.changes(),
-                compensated.check(),
-            ),
-            step(
-                "But Σ `ΔJ_k` = h/2, so that ``1 + Λ = Π_{k} (1 + x_k) ≤ e^(Σ_k x_k) = e^(h/2)``.",
-                compensated_changes(),
-                ShippedTheorem("Product", "one_plus_below_exp"),
-            ),
-            step(
-                "`x_k` and `x_{N−k}` are opposite, so Λ > 0: "
-                "``1 + Λ ≥ (1 + h/2)(1 − Σ_{k} x_k^2) > 1``, and Λ → 0.",
-                tried=[small],
-            ),
-            step(
-                "And it does so far from the identity: p' = −p (1 − √h q)/(1 + √h q), q' = −q.",
-                *to_and_fro(alternating),
-            ),
-        ],
-        setting=SETTING,
-        remark="What can be said in favour of criterion 4 is of smooth steps and all times: see "
-        "the other reading.",
+    return _TEXTS.refutation(
+        "criterion_4_against_2",
+        changes=compensated.changes(),
+        example=compensated.check(),
+        compensated_changes=compensated_changes(),
+        small=small,
+        to_and_fro=to_and_fro(alternating),
     )
 
 
@@ -229,22 +120,8 @@ def criterion_4_against_3(
     alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
     """Refute that 4 is stronger than criterion 3, for one-step maps in general."""
-    return refutation(
-        "criteria 3 and 4 imply each other in neither direction: p' = −p (1 − √h q)/(1 + √h q), q' "
-        "= −q satisfies 4 and not 3",
-        [
-            step(
-                "4 does not imply 3: p' = −p (1 − √h q)/(1 + √h q), q' = −q from q = 1 has Λ → 0, "
-                "and MSE > 4h for even N.",
-                *to_and_fro(alternating),
-            ),
-            step(
-                "Criterion 3 does not imply 4 (friction: ΔJ = −h + h²), so 3 and 4 cannot be "
-                "ordered.",
-                *shrinking(friction),
-            ),
-        ],
-        setting=SETTING,
+    return _TEXTS.refutation(
+        "criterion_4_against_3", to_and_fro=to_and_fro(alternating), shrinking=shrinking(friction)
     )
 
 

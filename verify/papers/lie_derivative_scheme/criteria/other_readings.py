@@ -8,27 +8,18 @@ t ≤ T, at once.
 from collections.abc import Sequence
 from fractions import Fraction
 
-from verify.papers.argument import NUMBERS, Argument, Check, Step, proof, refutation, step, vanishes
+from verify.papers.argument import NUMBERS, Argument, ArgumentTexts, Check, Step, vanishes
 from verify.papers.elementary_identities import mean_of_fourth_powers, squares_of_times
+from verify.papers.lie_derivative_scheme import examples
 from verify.papers.lie_derivative_scheme.consistency import consistent_map
-from verify.papers.lie_derivative_scheme.criteria.connections import (
-    BY_MANY_STEPS,
-    shrinking,
-    to_and_fro,
-)
-from verify.papers.lie_derivative_scheme.examples import (
-    FRICTION,
-    NOT_UNIFORM,
-    TO_AND_FRO,
-    TO_AND_FRO_ODD,
-    ExampleMap,
-)
-from verify.proof.assistant.shipped_theory import ShippedTheorem
+from verify.papers.lie_derivative_scheme.criteria.connections import shrinking, to_and_fro
+
+_TEXTS = ArgumentTexts(__file__)
 
 _FIXED = (0, 1, 2)  # k
 
 
-def _small_for_each_k(example: ExampleMap) -> Check:
+def _small_for_each_k(example: examples.ExampleMap) -> Check:
     """Check that ΔJ_k/h² does not depend on N for a few fixed k, so that each ΔJ_k is O(h²)."""
     ratios = [{example.run(n).delta_j[k] * n**2 for n in example.steps if n > k} for k in _FIXED]
     return Check(
@@ -40,7 +31,7 @@ def _small_for_each_k(example: ExampleMap) -> Check:
     )
 
 
-def _grows(example: ExampleMap) -> Check:
+def _grows(example: examples.ExampleMap) -> Check:
     """Check that Λ ≥ Σ ΔJ_k ≥ N/8, which is unbounded, and that MSE does not tend to 0."""
     runs = [(n, example.run(n)) for n in example.steps]
     holds = all(
@@ -56,36 +47,23 @@ def _grows(example: ExampleMap) -> Check:
     )
 
 
-def criterion_2_implies_3_pointwise(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
+def criterion_2_implies_3_pointwise(
+    not_uniform: examples.ExampleMap = examples.NOT_UNIFORM,
+) -> Argument:
     """Refute 2 ⇒ 3 for each k alone: each ΔJ_k = O(h²), and MSE → 1/5."""
-    return refutation(
-        "for p' = p(1 + q²), q' = q + h from (0, 0) each `ΔJ_k` = (kh)² = O(h²), but over [0, 1] "
-        "MSE → 1/5; for a step that depends smoothly on (p, q, h), as lieη does, the two senses "
-        "agree",
-        [
-            step(
-                "With `q_k` = kh one has ``ΔJ_k = (kh)^2``, for each fixed k a higher-order "
-                "infinitesimal of h.",
-                not_uniform.changes(),
-                _small_for_each_k(not_uniform),
-            ),
-            step(
-                "But the last steps of [0, 1] have kh near 1, and "
-                "``MSE = (1/N) Σ_{k} (kh)^4 → 1/5``.",
-                mean_of_fourth_powers(),
-                not_uniform.check(),
-                _grows(not_uniform),
-            ),
-        ],
-        remark="For a scheme whose step depends smoothly on (p, q, h) this cannot happen: if ΔJ = "
-        "o(h) at every point of a compact set, its Taylor coefficients of h⁰ and h¹ vanish there, "
-        "and ΔJ = O(h²) uniformly.",
+    return _TEXTS.refutation(
+        "criterion_2_implies_3_pointwise",
+        not_uniform_changes=not_uniform.changes(),
+        small_for_each_k=_small_for_each_k(not_uniform),
+        mean_of_fourth_powers=mean_of_fourth_powers(),
+        not_uniform_check=not_uniform.check(),
+        grows=_grows(not_uniform),
     )
 
 
 def criterion_4_and_2_pointwise(
-    not_uniform: ExampleMap = NOT_UNIFORM,
-    alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
+    not_uniform: examples.ExampleMap = examples.NOT_UNIFORM,
+    alternating: Sequence[examples.ExampleMap] = (examples.TO_AND_FRO, examples.TO_AND_FRO_ODD),
 ) -> Argument:
     """Prove that for each k alone 2 does not imply 4, nor 4 imply 2."""
     are_large = [abs(e.run(n).delta_j[0]) ** 2 * n >= 1 for e in alternating for n in e.steps]
@@ -95,31 +73,15 @@ def criterion_4_and_2_pointwise(
         f"{len(are_large)} step sizes, exactly",
         NUMBERS,
     )
-    return proof(
-        "read for each fixed k, criterion 2 does not imply criterion 4 (p' = p(1 + q²), q' = q + "
-        "h), nor 4 criterion 2; but neither map is lieη, for which the two senses agree and 2 "
-        "implies 4",
-        [
-            step(
-                "2 and not 4: for p' = p(1 + q²), q' = q + h from (0, 0) each `ΔJ_k` = (kh)² = "
-                "O(h²).",
-                not_uniform.changes(),
-                _small_for_each_k(not_uniform),
-            ),
-            step(
-                "But over [0, 1] ``Λ = Π_{k} (1 + (kh)^2) − 1 ≥ Σ_{k} (kh)^2 ≥ N/8``.",
-                ShippedTheorem("Product", "product_above_sum"),
-                squares_of_times(),
-                not_uniform.check(),
-                _grows(not_uniform),
-            ),
-            step(
-                "4 and not 2: p' = −p (1 − √h q)/(1 + √h q), q' = −q from q = 1 has Λ → 0 and "
-                "``|ΔJ_0| = 2√h/(1 + √h) ≥ √h``.",
-                *to_and_fro(alternating),
-                at_first,
-            ),
-        ],
+    return _TEXTS.proof(
+        "criterion_4_and_2_pointwise",
+        not_uniform_changes=not_uniform.changes(),
+        small_for_each_k=_small_for_each_k(not_uniform),
+        squares_of_times=squares_of_times(),
+        not_uniform_check=not_uniform.check(),
+        grows=_grows(not_uniform),
+        to_and_fro=to_and_fro(alternating),
+        at_first=at_first,
     )
 
 
@@ -128,55 +90,32 @@ def criterion_4_against_2_smooth(hamiltonian: bool = False) -> Argument:
 
     `hamiltonian`: as for `_steps_for_every_time`.
     """
-    return refutation(
-        f"{_EQUIVALENT}: 4 is as strong as 2, and no stronger",
-        _steps_of_equivalence(hamiltonian),
-        setting=_SETTING,
+    return _TEXTS.refutation(
+        "criterion_4_against_2_smooth", steps_of_equivalence=_steps_of_equivalence(hamiltonian)
     )
 
 
 def criterion_4_equals_2(hamiltonian: bool = False) -> Argument:
     """Prove that 4 on every [0, t] and 2 are equivalent for steps z + hg + h²r."""
-    return proof(_EQUIVALENT, _steps_of_equivalence(hamiltonian), setting=_SETTING)
-
-
-_SETTING = "Let the orbit of z' = g(z) exist on [0, T]."
-_EQUIVALENT = (
-    "for steps z + hg(z) + h²r(z, h) with smooth g and r, criterion 4 on [0, t] for every t ≤ T "
-    "implies criterion 2, and criterion 2 implies it"
-)
+    return _TEXTS.proof(
+        "criterion_4_equals_2", steps_of_equivalence=_steps_of_equivalence(hamiltonian)
+    )
 
 
 def _steps_of_equivalence(hamiltonian: bool) -> list[Step]:
-    return [
-        *_steps_for_every_time(hamiltonian),
-        step(
-            "Criterion 2 implies criterion 4 on every [0, t]: ``|Λ| ≤ e^(t m/h) − 1 → 0``, m = "
-            "max |`ΔJ_k`|.",
-            BY_MANY_STEPS,
-        ),
-    ]
+    return _TEXTS.steps(
+        "_steps_of_equivalence", steps_for_every_time=_steps_for_every_time(hamiltonian)
+    )
 
 
 def criterion_4_against_3_smooth(
-    hamiltonian: bool = False, friction: ExampleMap = FRICTION
+    hamiltonian: bool = False, friction: examples.ExampleMap = examples.FRICTION
 ) -> Argument:
     """Prove for steps z + hg + h²r that 4 on every [0, t] implies 3, but not vice versa."""
-    return proof(
-        "for steps z + hg(z) + h²r(z, h) with smooth g and r, criterion 4 on [0, t] for every t ≤ "
-        "T implies criterion 3, which always holds then, and is not implied by it",
-        [
-            *_steps_for_every_time(hamiltonian),
-            step(
-                "Criterion 3 always holds: the mean of `ΔJ_k²` is at most its maximum, O(h²).",
-                ShippedTheorem("Sums", "sum_of_less"),
-            ),
-            step(
-                "Criterion 4 does not hold for the oscillator with friction, where div g = −1.",
-                *shrinking(friction),
-            ),
-        ],
-        setting=_SETTING,
+    return _TEXTS.proof(
+        "criterion_4_against_3_smooth",
+        steps_for_every_time=_steps_for_every_time(hamiltonian),
+        shrinking=shrinking(friction),
     )
 
 
@@ -189,21 +128,11 @@ def _steps_for_every_time(hamiltonian: bool) -> list[Step]:
     ring = next(iter(powers.values())).context()
     divergence = ring.gens()[ring.names().index("a_p")] + ring.gens()[ring.names().index("b_q")]
     none = divergence - divergence
-    return [
-        step(
-            "``ΔJ = h div g + O(h^2)``, for any g.",
-            vanishes(
-                "ΔJ of a generic map z + hg + h²r is h div g + O(h²), g generic",
-                powers.get(1, none) - divergence,
-                powers.get(0, none),
-            ),
+    return _TEXTS.steps(
+        "_steps_for_every_time",
+        vanishes=vanishes(
+            "ΔJ of a generic map z + hg + h²r is h div g + O(h²), g generic",
+            powers.get(1, none) - divergence,
+            powers.get(0, none),
         ),
-        step(
-            "So Σ log(1 + `ΔJ_k`) = Σ h div g(`z_k`) + O(h), and, as Φ converges to the orbit, "
-            "over [0, t] ``Λ → e^(∫_0^t div g dt) − 1``.",
-        ),
-        step(
-            "If that is 0 for every t ≤ T, then div g = 0 along the orbit, div g(`z_k`) = "
-            "O(h), and `ΔJ_k` = O(h²) uniformly: criteria 2 and 3 follow.",
-        ),
-    ]
+    )

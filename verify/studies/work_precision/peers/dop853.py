@@ -11,19 +11,14 @@ from fractions import Fraction
 from verify.arithmetic.systems import float64
 from verify.flows.compiled_functions import functions_at
 from verify.hamiltonians.canonical_field import canonical_field
-from verify.studies.work_precision.peers import (
-    Answer,
-    InitialValueProblem,
-    PeerError,
-    Solver,
-)
+from verify.studies.work_precision import peers
 
 NAME = "DOP853"
 LIBRARY = "scipy"
 TOLERANCES = tuple(Fraction(1, 10**n) for n in range(3, 14))  # scipy's limit is 100 · 2⁻⁵²
 
 
-def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
+def make(problem: peers.InitialValueProblem, tolerance: Fraction) -> peers.Solver:
     """Return a solver with rtol = atol = tolerance."""
     from scipy.integrate import solve_ivp
 
@@ -46,13 +41,13 @@ def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
         slope_values: tuple[float, ...] = slopes(*z, t)
         return slope_values
 
-    def solve() -> Answer:
+    def solve() -> peers.Answer:
         solution = solve_ivp(
             time_dependent_field if field.timed else autonomous_field, (begin, end), start,
             method="DOP853", t_eval=(end,), rtol=float(tolerance), atol=float(tolerance),
         )  # fmt: skip
         if not solution.success:
-            raise PeerError(solution.message)
-        return Answer(tuple(map(float, solution.y[:, -1])), None, int(solution.nfev))
+            raise peers.PeerError(solution.message)
+        return peers.Answer(tuple(map(float, solution.y[:, -1])), None, int(solution.nfev))
 
-    return Solver(solve, compile_seconds)
+    return peers.Solver(solve, compile_seconds)

@@ -13,19 +13,14 @@ from typing import Any
 import sympy
 
 from verify.algebra.formula import symbol
-from verify.studies.work_precision.peers import (
-    Answer,
-    InitialValueProblem,
-    PeerError,
-    Solver,
-)
+from verify.studies.work_precision import peers
 
 NAME = "Taylor (heyoka)"
 LIBRARY = "heyoka"
 TOLERANCES = tuple(Fraction(1, 10**n) for n in range(3, 16))
 
 
-def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
+def make(problem: peers.InitialValueProblem, tolerance: Fraction) -> peers.Solver:
     """Return a solver of that tolerance. Raises PeerError for an H that heyoka does not take."""
     import heyoka as hy
 
@@ -41,15 +36,15 @@ def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
     taylor = hy.taylor_adaptive(field, list(start), tol=float(tolerance))
     compile_seconds = time.perf_counter() - start_time
 
-    def solve() -> Answer:
+    def solve() -> peers.Answer:
         taylor.time = begin
         taylor.state[:] = start
         outcome, _, _, steps, *_ = taylor.propagate_until(end)
         if outcome != hy.taylor_outcome.time_limit:
-            raise PeerError(f"heyoka stopped: {outcome}")
-        return Answer(tuple(map(float, taylor.state)), int(steps), None)
+            raise peers.PeerError(f"heyoka stopped: {outcome}")
+        return peers.Answer(tuple(map(float, taylor.state)), int(steps), None)
 
-    return Solver(solve, compile_seconds)
+    return peers.Solver(solve, compile_seconds)
 
 
 def _translate(expression: sympy.Expr) -> Any:
@@ -60,4 +55,4 @@ def _translate(expression: sympy.Expr) -> Any:
     try:
         return hy.from_sympy(expression, {**numbers_by_value, symbol("t"): hy.time})
     except (ValueError, TypeError) as error:
-        raise PeerError(f"heyoka does not take this H: {error}") from None
+        raise peers.PeerError(f"heyoka does not take this H: {error}") from None
