@@ -188,10 +188,10 @@ def _proof_counts(proofs: Sequence[ProofResult]) -> list[tuple[Verdict, int, str
 def _finding_of_proof(proof: ProofResult) -> str:
     if proof.keeps:
         exactly = "preserves area exactly (det J ≡ 1)" if proof.form is None else "is symplectic"
-        return f"{proof.scheme} {exactly}"
+        return f"{proof.scheme_title} {exactly}"
     if proof.order is not None:
-        return f"{proof.what} of {proof.scheme} is of order {_power_of_h(proof.order)}"
-    return f"the order of {proof.what} of {proof.scheme} is undecided"
+        return f"{proof.what} of {proof.scheme_title} is of order {_power_of_h(proof.order)}"
+    return f"the order of {proof.what} of {proof.scheme_title} is undecided"
 
 
 def _finding_of_runs(judged_runs: Sequence[StabilityResult]) -> str:
@@ -249,13 +249,19 @@ def _tile_of_proof(proof: ProofResult) -> Tile:
     verdict, sign = proof.verdict, SIGNS[proof.verdict][0]
     defect, structure = proof.what, "area" if proof.form is None else "the symplectic form"
     if proof.keeps:
-        return Tile(verdict, sign, f"{defect} ≡ 0", proof.scheme, f"preserves {structure} exactly")
+        return Tile(
+            verdict, sign, f"{defect} ≡ 0", proof.scheme_title, f"preserves {structure} exactly"
+        )
     if proof.order is not None:
         meaning = f"proved: changes {structure} at this order in every step"
         return Tile(
-            Verdict.REFUTED, "≠", f"{defect} ∼ {_power_of_h(proof.order)}", proof.scheme, meaning
+            Verdict.REFUTED,
+            "≠",
+            f"{defect} ∼ {_power_of_h(proof.order)}",
+            proof.scheme_title,
+            meaning,
         )
-    return Tile(verdict, sign, defect, proof.scheme, "its order is undecided")
+    return Tile(verdict, sign, defect, proof.scheme_title, "its order is undecided")
 
 
 # -- the most telling picture ---------------------------------------------------------------------

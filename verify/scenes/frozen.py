@@ -18,6 +18,7 @@ from pydantic import (
 )
 
 from verify.prose import Prose
+from verify.schemes import title_of_scheme
 
 Real = Annotated[float, PlainSerializer(repr, str, when_used="json")]  # of no exact value
 Seconds = Real
@@ -64,7 +65,23 @@ class Section(Frozen):
             yield "initial_value", start
 
 
-class OfScheme(Frozen):
+class TitledScheme:
+    """The scheme of a result, for heads and legends."""
+
+    scheme: str
+
+    @property
+    def scheme_title(self) -> str:
+        """The name of the scheme there; see `verify.schemes.title_of_scheme`."""
+        return title_of_scheme(self.scheme)
+
+    @property
+    def scheme_parts(self) -> str:
+        """The text that the title leaves out: formulas, or the parts of a splitting of a field."""
+        return self.scheme[len(self.scheme_title) :].lstrip(": ").removeprefix("with ")
+
+
+class OfScheme(TitledScheme, Frozen):
     """A result on one scheme for one H with its parameter values."""
 
     hamiltonian: str
@@ -75,20 +92,6 @@ class OfScheme(Frozen):
     def order_of_delta_j(self) -> int | None:
         """The proved order in h of ΔJ = det J − 1; None if there is none."""
         return None
-
-    @property
-    def scheme_title(self) -> str:
-        """The scheme for a title: the one that its user gave it; else of a splitting of a field its
-        steps, without the parts."""
-        from verify.schemes import separate_title
-        from verify.schemes.field_splitting import separate_parts
-
-        return separate_title(self.scheme)[0] or separate_parts(self.scheme)[0]
-
-    @property
-    def scheme_parts(self) -> str:
-        """The rest of its text: the formulas behind a title, or the parts of a splitting."""
-        return self.scheme[len(self.scheme_title) :].lstrip(": ").removeprefix("with ")
 
 
 class WithProse(Frozen):

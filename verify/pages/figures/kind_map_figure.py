@@ -97,7 +97,7 @@ def _draw_runs(axes: Any, stability_map: StabilityMapResult, area_factor: float)
         coordinates = zip(*limits, strict=True)
         axes.plot(*coordinates, color=INK, linewidth=1.4, label="limit of linear theory")
     _frame(axes, xs, ys)
-    axes.set_title(stability_map.scheme)
+    axes.set_title(stability_map.scheme_title)
 
 
 def _frame(axes: Any, xs: Sequence[float], ys: Sequence[float]) -> None:
@@ -125,7 +125,7 @@ def draw_orbit_maps(maps: Sequence[OrbitMapResult]) -> Figure:
     )
     for axes, orbit_map in zip(panels.flat, maps, strict=False):
         _draw_orbits(axes, orbit_map, columns)
-    name_states(panels, [orbit_map.scheme for orbit_map in maps], maps[0].axes, _MARGIN)
+    name_states(panels, [orbit_map.scheme_title for orbit_map in maps], maps[0].axes, _MARGIN)
     name_marks(figure, panels, 4)
     return figure
 

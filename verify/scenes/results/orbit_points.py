@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from verify.scenes.frozen import Frozen, Seconds
+from verify.scenes.frozen import Frozen, Seconds, TitledScheme
 
 
 class StroboscopicOrbit(Frozen):
@@ -21,7 +21,7 @@ class StroboscopicOrbit(Frozen):
     left: bool
 
 
-class SchemeSections(Frozen):
+class SchemeSections(TitledScheme, Frozen):
     """The orbits of one scheme, followed in `arithmetic` with `digits` digits."""
 
     scheme: str

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from verify.scenes.frozen import Frozen, OfScheme, ProseText, WithProse
+from verify.scenes.frozen import Frozen, OfScheme, ProseText, TitledScheme, WithProse
 
 Kind = Literal[
     "stable", "drifts", "unstable: scheme", "unstable: arithmetic", "escapes", "overflow",
@@ -18,7 +18,7 @@ ORBIT_KINDS: tuple[OrbitKind, ...] = OrbitKind.__args__  # type: ignore[attr-def
 Rows = Annotated[tuple[tuple[str | None, ...], ...], Field(min_length=1)]
 
 
-class StabilityResult(WithProse):
+class StabilityResult(TitledScheme, WithProse):
     """One run's verdict, which says what it is due to; `id` is the run's name in its scene, `t0`
     when it starts where H depends on time.
 

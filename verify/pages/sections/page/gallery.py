@@ -68,7 +68,7 @@ def _tiles(gallery: Gallery) -> list[Tile]:
             Verdict.MEASURED,
             SIGNS[Verdict.MEASURED][0],
             *short_value(gallery.measure, scene.value),
-            meaning=f"{scene.separation.scheme}, h = {scene.separation.step_size}",
+            meaning=f"{scene.separation.scheme_title}, h = {scene.separation.step_size}",
         )
         for scene in gallery.scenes[:_TILES]
     ]
@@ -85,7 +85,7 @@ def _finding(gallery: Gallery) -> str:
     worst = gallery.scenes[0].separation
     finding = findings(gallery.measure, gallery.sentence, gallery.scenes[0].value)
     return (
-        f"In the worst of {count} ({search_text}), {finding}: {worst.scheme} with "
+        f"In the worst of {count} ({search_text}), {finding}: {worst.scheme_title} with "
         f"h{NBSP}={NBSP}{step(worst.step_size)} from {start(worst)}."
     )
 

@@ -72,8 +72,8 @@ def _compare_orders(scene: SceneResult) -> Iterator[str]:
             continue
         if form.volume_order > proof.order:
             yield (
-                f"S of {proof.scheme} begins with {power_of_h(proof.order)} and det J − 1 with "
-                f"{power_of_h(form.volume_order)}: by det J alone it would seem to be "
+                f"S of {proof.scheme_title} begins with {power_of_h(proof.order)} and det J − 1 "
+                f"with {power_of_h(form.volume_order)}: by det J alone it would seem to be "
                 f"{count_noun(form.volume_order - proof.order, 'order')} better than it is."
             )
 

@@ -32,9 +32,9 @@ def _orbits_view(maps: Sequence[OrbitMapResult], anchor: str) -> OrbitsView:
     cells = whole(len(first_map.across) * len(first_map.upwards))
     title = f"{cells} orbits over {axes}"
     time = short(Fraction(first_map.step_size) * first_map.steps)
-    names = join_and(m.scheme for m in maps)
+    names = join_and(m.scheme_title for m in maps)
     lead = f"{title}, by {names}, until t{IS}{number(time)}; h{IS}{step(first_map.step_size)}"
-    counts = "; ".join(f"{m.scheme}: {_counts(m)}" for m in maps)
+    counts = "; ".join(f"{m.scheme_title}: {_counts(m)}" for m in maps)
     texts = [f"{name}{IS}{number(x)}" for name, x in _fixed_values(first_map)]
     fixed = f", with {', '.join(texts)}" if texts else ""
     has_energies = all(x is not None for row in first_map.energies for x in row)
@@ -79,13 +79,13 @@ def _energy_finding(orbit_map: OrbitMapResult) -> str:
             energies[orbit_map.kinds[i][j] == "leaves"].append(Fraction(energy))
     leave, stay = energies[True], energies[False]
     if not leave:
-        return f"By {orbit_map.scheme} none leaves."
+        return f"By {orbit_map.scheme_title} none leaves."
     if not stay:
-        return f"By {orbit_map.scheme} all leave."
+        return f"By {orbit_map.scheme_title} all leave."
     least_leaving, most_staying = (number(short(x)) for x in (min(leave), max(stay)))
     return (
-        f"By {orbit_map.scheme} the lowest energy that leaves is {least_leaving}, the highest that "
-        f"stays {most_staying}."
+        f"By {orbit_map.scheme_title} the lowest energy that leaves is {least_leaving}, the highest "
+        f"that stays {most_staying}."
     )
 
 
@@ -106,7 +106,7 @@ def _row(orbit_map: OrbitMapResult, kind: OrbitKind) -> TableRow:
         number(max(defects, key=Fraction)) if defects else "–",
         whole(min(leaving_steps)) if leaving_steps else "–",
     )
-    return TableRow(orbit_map.scheme, entries)
+    return TableRow(orbit_map.scheme_title, entries)
 
 
 SECTION = ReportSection(

@@ -85,8 +85,8 @@ def _finding(
     if drifting:
         worst = drifting[0]
         yield (
-            f"The fastest drift is that of {worst.scheme} at h = {step(worst.step_size)}: its "
-            f"energy changes by {number(worst.rate or '0')} of its own scale in a unit of time."
+            f"The fastest drift is that of {worst.scheme_title} at h = {step(worst.step_size)}: "
+            f"its energy changes by {number(worst.rate or '0')} of its own scale in a unit of time."
         )
     comparable = [s for s in steps if s.bounded and s.linear and Fraction(s.linear) > 0]
     if comparable:
@@ -96,7 +96,7 @@ def _finding(
             f"Where linear theory allows steps at all, the largest step with bounded motion is "
             f"{low} to {high} times the one that it predicts from where the orbit is stiffest."
         )
-    never = [s.scheme for s in steps if s.linear and Fraction(s.linear) == 0 and s.bounded]
+    never = [s.scheme_title for s in steps if s.linear and Fraction(s.linear) == 0 and s.bounded]
     if never:
         yield (
             f"For {join_and(never)} it allows none, and what is bounded over this time is so for "
@@ -107,7 +107,7 @@ def _finding(
 def _name(run: stability.StabilityResult) -> str:
     """Return the run's id without scene, scheme and step size: the section and initial value."""
     _, *parts = run.id.split("/")
-    implied = (run.scheme, f"h={short(Fraction(run.step_size))}")
+    implied = (run.scheme_title, f"h={short(Fraction(run.step_size))}")
     return ", ".join(part for part in parts if part not in implied)
 
 
@@ -119,7 +119,7 @@ def _row_of_largest_step(result: stability.LargestStepResult) -> TableRow:
             ratio = f"{float(Fraction(result.bounded) / Fraction(result.linear)):.3f}"
     measured_step = _four_digits(result.bounded) if result.bounded else prose(result.detail)
     return TableRow(
-        f"{result.scheme}{_describe_requirements(result)}", (measured_step, linear, ratio)
+        f"{result.scheme_title}{_describe_requirements(result)}", (measured_step, linear, ratio)
     )
 
 
@@ -148,9 +148,9 @@ def _plots(maps: Sequence[stability.StabilityMapResult], anchor: str) -> Iterato
     for index, group in enumerate(groups.values()):
         from verify.pages.figures.kind_map_figure import draw_planes
 
-        names = join_and(stability_map.scheme for stability_map in group)
+        names = join_and(stability_map.scheme_title for stability_map in group)
         lead = f"Stability of {names} over the step size h and {group[0].parameter}"
-        counts = "; ".join(f"{m.scheme}: {counts_of(m.counted())}" for m in group)
+        counts = "; ".join(f"{m.scheme_title}: {counts_of(m.counted())}" for m in group)
         plot = captioned_plot(
             lambda group=group: draw_planes(group),  # type: ignore[misc]
             name=f"stability-{index}-of-{anchor}",
@@ -170,7 +170,7 @@ def _caption(maps: Sequence[stability.StabilityMapResult], counts: str) -> str:
             " The line is where h times the orbit’s greatest frequency reaches the limit of linear "
             "theory."
         )
-    never = [m.scheme for m in maps if any(m.linear) and not any(map(_is_positive, m.linear))]
+    never = [m.scheme_title for m in maps if any(m.linear) and not any(map(_is_positive, m.linear))]
     if never:
         limit_note += f" For {join_and(never)} linear theory has no stable step."
     return (

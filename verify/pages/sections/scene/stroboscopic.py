@@ -20,7 +20,7 @@ def _view(scene: SceneResult, anchor: str) -> tuple[orbits_view.OrbitsView, ...]
 def _orbits_view(result: StroboscopicResult, anchor: str) -> orbits_view.OrbitsView:
     from verify.pages.figures.orbit_points_figure import count_drawn_looks, draw_periods
 
-    schemes = join_and(section.scheme for section in result.sections)
+    schemes = join_and(section.scheme_title for section in result.sections)
     start_note = "" if result.t0 is None else f", from t₀{IS}{number(result.t0)}"
     orbits = whole(len(result.sections[0].orbits))
     lead = (
@@ -55,7 +55,9 @@ def _orbits_view(result: StroboscopicResult, anchor: str) -> orbits_view.OrbitsV
 def _finding(result: StroboscopicResult) -> Iterator[str]:
     for section in result.sections:
         partly_known = [o for o in section.orbits if o.known < len(o.points) - 1]
-        source = f"{section.scheme}: with {whole(section.digits)} digits in {section.arithmetic}"
+        source = (
+            f"{section.scheme_title}: with {whole(section.digits)} digits in {section.arithmetic}"
+        )
         if partly_known:
             part = orbits_view.describe_partly_known(section.orbits, partly_known, "periods")
             yield f"{source} {part}."
@@ -74,7 +76,7 @@ def _rows(result: StroboscopicResult) -> Iterator[TableRow]:
                 number(orbit.q), number(orbit.p), whole(period_count), whole(orbit.known),
                 whole(orbit.in_float64),
             )  # fmt: skip
-            yield TableRow(section.scheme, cells, orbits_view.describe_escape(orbit))
+            yield TableRow(section.scheme_title, cells, orbits_view.describe_escape(orbit))
 
 
 SECTION = ReportSection(
