@@ -84,8 +84,8 @@ def _energy_finding(orbit_map: OrbitMapResult) -> str:
         return f"By {orbit_map.scheme_title} all leave."
     least_leaving, most_staying = (number(short(x)) for x in (min(leave), max(stay)))
     return (
-        f"By {orbit_map.scheme_title} the lowest energy that leaves is {least_leaving}, the highest "
-        f"that stays {most_staying}."
+        f"By {orbit_map.scheme_title} the lowest energy that leaves is {least_leaving}, the "
+        f"highest that stays {most_staying}."
     )
 
 
