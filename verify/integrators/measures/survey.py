@@ -247,10 +247,10 @@ def places_of_map(
 ) -> list[TrialPlace]:
     """Choose the places for a map without an H, in these units of the coordinates, or in those of
     the user's place where that is far from them."""
-    own = request.z or (Fraction(0),) * len(names)
+    point = request.z or (Fraction(0),) * len(names)
     units = tuple(
         request.scale.get(name, u if not x or 1 / ALIKE < abs(x) / u < ALIKE else abs(x))
-        for name, u, x in zip(names, sizes, own, strict=True)
+        for name, u, x in zip(names, sizes, point, strict=True)
     )
     reach = tuple(_power_of_two(float(u)) for u in units)
     places = [TrialPlace(z, Fraction(0), units, reach) for z in states(units)]
