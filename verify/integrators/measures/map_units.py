@@ -33,7 +33,7 @@ def _find_units(step: UserMap, how: str) -> list[Fraction] | None:
     for exponent in range(-20, 21):
         jacobian = None
         for _ in range(2):  # where the shares move the place, they are found again
-            units = [round_to_simple(2.0**exponent * x) for x in shares]
+            units = [Fraction(2.0**exponent * x) for x in shares]
             jacobian = _jacobian_at(probe, units)
             shares = _balance(jacobian, units, shares) if jacobian else shares
         scaled = [[x * float(units[j] / units[i]) for j, x in enumerate(row)]
@@ -42,7 +42,7 @@ def _find_units(step: UserMap, how: str) -> list[Fraction] | None:
             continue
         # Differences of floats across a jump of the map look like a change.
         if how == "duals" and first_jacobian and _has_changed(first_jacobian, scaled):
-            return units
+            return [round_to_simple(float(x)) for x in units]
         first_jacobian = first_jacobian or scaled
     return [round_to_simple(x) for x in shares] if first_jacobian else None
 
