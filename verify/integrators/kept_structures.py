@@ -24,7 +24,7 @@ from verify.verdict import Verdict
 # In natural units: a smaller defect of a code with a loop, which follows no power of h, may be what
 # the loop leaves that ends at a tolerance.
 _MAX_LOOP_DEFECT = 1e-5
-_TURN_TOLERANCE = 1e-11  # relative, of multiples of 2π
+_TURN_TOLERANCE, _MOST_TURNS = 1e-11, 1e6  # relative, of multiples of 2π; larger ones tell nothing
 
 
 def from_proof(proof: StructureProof, domain: FormulaDomain) -> KeptStructure:
@@ -161,7 +161,10 @@ def _wraps(structure: Structure, measurement: KeptMeasurement) -> bool:
         return False
     components = [x for reading in measurement.seen for x in reading.components.values()]
     turns = [(x, x.value / (2 * math.pi)) for x in components if x.ratio > CLEAR_RATIO]
-    return all(round(y) and abs(y - round(y)) < _TURN_TOLERANCE * abs(y) for _, y in turns)
+    return all(
+        0.5 < abs(y) < _MOST_TURNS and abs(y - round(y)) < _TURN_TOLERANCE * abs(y)
+        for _, y in turns
+    )
 
 
 def _turns_orientation(structure: Structure, measurement: KeptMeasurement) -> bool:

@@ -11,10 +11,10 @@ from fractions import Fraction
 
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.measures.map_units import find_map_units
 from verify.integrators.measures.survey import (
     Request,
     check_request,
-    find_map_unit,
     places_of_field,
     places_of_map,
     shorten_steps,
@@ -60,8 +60,9 @@ def prepare_map(callee: Callee, request: Request) -> tuple[list[TrialPlace], lis
     step = callee.step
     check_request(step.names, request)
     # The map's unit of length is measured by calls, which need the layout: here the unit is 1.
-    notes = settle_layout(callee, places_of_map(step.names, Fraction(1), request), None)
-    return places_of_map(step.names, find_map_unit(step), request), notes
+    ones = [Fraction(1)] * len(step.names)
+    notes = settle_layout(callee, places_of_map(step.names, ones, request), None)
+    return places_of_map(step.names, find_map_units(step), request), notes
 
 
 def settle_layout(

@@ -121,6 +121,7 @@ SYSTEMS: Mapping[str, System] = {
 
 # -- planted errors --------------------------------------------------------------------------------
 
+MAP_EXPONENT = 2
 Mistake = Callable[[Vector, Vector, Any, Any], Vector]  # of z, z', h and its size
 
 
@@ -142,7 +143,7 @@ class DrawnStep:
     """A step of a system: its method, its mistake, "" for none, and its units.
 
     `units`: of the coordinates and of time; `probe`: how the code may be read; `size`: of the
-    mistake, in the units in which all is near 1.
+    mistake, in the units in which all is near 1. `is_map`: True if h is 2^−MAP_EXPONENT alone.
     """
 
     system: System
@@ -152,6 +153,7 @@ class DrawnStep:
     units: tuple[float, ...]
     time: float
     probe: str
+    is_map: bool = False
 
     def _step(self, numbers: Any, f: Field) -> Callable[[Vector, Any], Vector]:
         method, mistake = self.system.methods[self.method], MISTAKES.get(self.mistake)
@@ -165,7 +167,7 @@ class DrawnStep:
 
     @property
     def function(self) -> Callable[..., Any]:
-        """The user's step of p, q and h, or of z and h."""
+        """The user's step of p, q and h, or of z and h; or the map of z."""
         symbols, units, time = _symbols(" ".join(self.system.names)), self.units, self.time
         f = sympy.lambdify(symbols, self.system.slopes, "math")
         plain, n = self._step(math, lambda z: f(*z)), len(units) // 2
@@ -175,6 +177,8 @@ class DrawnStep:
             return [x * unit for x, unit in zip(plain(parts, h / time), units, strict=True)]
 
         step = {"as it is": lambda x: x, "duals": compared, "floats": packed}[self.probe](scaled)
+        if self.is_map:
+            return lambda z: step([*z], time / 2**MAP_EXPONENT)
         if self.system.energy is None:
             return lambda z, h: step([*z], h)
         if n == 1:
@@ -202,8 +206,9 @@ class DrawnStep:
     @property
     def point(self) -> tuple[float, ...] | None:
         """A state that the user gives; None where the system has a scale that tells where to look,
-        or the error of the step has none either."""
+        or the error of the step has none either. A map has nothing that tells."""
         scaled = self.system is not SYSTEMS["kepler"] or self.mistake in ("", "friction")
+        scaled = scaled and not self.is_map
         state = zip(self.points[0], self.units, strict=True)
         return None if scaled else tuple(float(x) * unit for x, unit in state)
 
@@ -248,7 +253,7 @@ class DrawnStep:
         """What is in --keeps, and the refinement beside it."""
         kept, names, exact = structure.kept, self.system.names, self._exact
         x = [self.formula(y) for y in kept.formulas]
-        if not structure.name:
+        if not structure.name or (self.is_map and kept.kind == "integral"):
             return str(x[0]), {}
         form = " + ".join(f"({y / exact[a] / exact[b]})*d{names[a]}^d{names[b]}"
                           for y, (a, b) in zip(x, kept.places, strict=False))  # fmt: skip
@@ -262,6 +267,9 @@ class DrawnStep:
             "reverses": {"reverses": ", ".join(str(y * e) for y, e in zip(x, exact, strict=False))},
             "factor": {"form": form, "factor": str(self.formula(kept.factor))},
         }  # fmt: skip
+        if self.is_map and structure.refinement == "factor":
+            rate = kept.factor.subs(h, sympy.Integer(2) ** -MAP_EXPONENT)
+            return structure.name, {"form": form, "factor": str(rate)}
         return structure.name, texts[structure.refinement]
 
 

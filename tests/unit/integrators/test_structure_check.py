@@ -201,6 +201,12 @@ def test_what_the_exact_flow_does_not_keep_is_refused() -> None:
         verify.check(steps.DAMPED, steps.damped, keeps=["volume"], arguments="v,x,h")
 
 
+def test_what_is_far_off_is_no_multiple_of_a_turn() -> None:
+    """Each number of 10¹⁴ and more is near a multiple of 2π, by the digits that it has."""
+    found = verify.check_map(lambda p, q: (p + 1e14 * q, q + p), keeps=["reversible"])
+    assert found.verdict == "REFUTED", found.reason
+
+
 def test_a_map_is_judged_by_its_own_names() -> None:
     names = "v1,v2,x1,x2"
     right = verify.check_map(steps.two, coordinates=names, form="dv1^dx1 + 3*dv2^dx2")

@@ -107,7 +107,7 @@ class KeptMeasurement:
     def _telling(self) -> list[FollowedDefect]:
         """The places at which the power is seen: elsewhere the defect is smaller than at those,
         down to its noise, as where terms cancel."""
-        settled = [x for x in self._powers if x.power.power is not None]
+        settled = [x for x in self._powers if x.power.power is not None and x.power.tail is None]
         largest = dict[Fraction, float]()
         for x in settled:
             largest |= {n: max(y, largest.get(n, 0.0)) for n, y in x.sizes.items()}

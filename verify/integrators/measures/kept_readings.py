@@ -18,7 +18,7 @@ from verify.integrators.places.trial_places import TrialPlace
 # A defect is not 0 if it exceeds its noise by this factor; up to it, and beyond `REFUTING_RATIO`,
 # nothing is said.
 CLEAR_RATIO = 32.0
-_LAST_SLOPES = 4  # those that count at a place where no power has settled
+_LAST_SLOPES = 3  # those that count at a place where no power has settled
 
 
 @dataclass(frozen=True)

@@ -14,13 +14,11 @@ from functools import partial
 from verify.arithmetic.exact import decimal
 from verify.errors import InputError
 from verify.flows.extrapolation import NoFlowError
-from verify.integrators.measures.probes import DualProbe
 from verify.integrators.places.equation_units import units_of_system
 from verify.integrators.places.trial_places import (
     PATTERN,
     USER,
     TrialPlace,
-    round_to_simple,
     select_spread,
     states,
 )
@@ -36,8 +34,8 @@ _MAX_VARIANTS = 4  # states that are tried for one pattern of signs
 _MOST_PLACES = {1: 12, 2: 16}  # by the degrees of freedom
 _MOST_PLACES_OTHERWISE = 16
 _PLACES_IN_OTHER_SCALES = 4  # in each scale of H but the first
-_CHANGE_SHARE = 0.1  # J has changed if an entry differs by this part of the largest entry
 _RIPPLE_FACTOR = 8  # a field ripples if its slope at a point is this multiple of that over a length
+ALIKE = 30  # sizes of a coordinate that differ less are one
 _LARGEST_STEP = Fraction(1, 2)  # in units of the time in which the motion changes
 
 
@@ -245,10 +243,15 @@ def _measure_stride(step: UserMap, place: TrialPlace) -> float:
 
 
 def places_of_map(
-    names: Sequence[str], unit: Fraction, request: Request = NO_REQUEST
+    names: tuple[str, ...], sizes: Sequence[Fraction], request: Request = NO_REQUEST
 ) -> list[TrialPlace]:
-    """Choose the places for a map without an H, with one unit for all coordinates."""
-    units = tuple(request.scale.get(name, unit) for name in names)
+    """Choose the places for a map without an H, in these units of the coordinates, or in those of
+    the user's place where that is far from them."""
+    point = request.z or (Fraction(0),) * len(names)
+    units = tuple(
+        request.scale.get(name, u if not x or 1 / ALIKE < abs(x) / u < ALIKE else abs(x))
+        for name, u, x in zip(names, sizes, point, strict=True)
+    )
     reach = tuple(_power_of_two(float(u)) for u in units)
     places = [TrialPlace(z, Fraction(0), units, reach) for z in states(units)]
     if request.z is not None:
@@ -258,43 +261,3 @@ def places_of_map(
         )))  # fmt: skip
     count = _MOST_PLACES.get(len(names) // 2, _MOST_PLACES_OTHERWISE)
     return places[: count + (request.z is not None)]
-
-
-def find_map_unit(step: UserMap) -> Fraction:
-    """Return the distance from 0 at which the map's Jacobian has changed; 1 if it does not."""
-    first_jacobian: list[list[float]] | None = None
-    try:
-        probe = DualProbe(step)
-        for exponent in range(-20, 21):
-            unit = Fraction(2) ** exponent
-            jacobian = _jacobian_at(probe, step.names, unit)
-            if (
-                jacobian is not None
-                and first_jacobian is not None
-                and _has_changed(first_jacobian, jacobian)
-            ):
-                return round_to_simple(float(unit))
-            first_jacobian = first_jacobian or jacobian
-    except Exception:  # the user's code may raise anything
-        return Fraction(1)
-    return Fraction(1)
-
-
-def _jacobian_at(
-    probe: DualProbe, names: Sequence[str], unit: Fraction
-) -> list[list[float]] | None:
-    units = (unit,) * len(names)
-    place = TrialPlace(states(units)[0], Fraction(0), units, units)
-    measured = unless_it_fails(partial(probe.jacobian, place, Fraction(0)))
-    return None if measured is None else [[float(x) for x in row] for row in measured[0]]
-
-
-def _has_changed(one_jacobian: list[list[float]], other_jacobian: list[list[float]]) -> bool:
-    """Return True if an entry differs by more than a tenth of the largest entry of the first."""
-    largest = max(abs(x) for row in one_jacobian for x in row)
-    pairs = zip(one_jacobian, other_jacobian, strict=True)
-    return any(
-        abs(x - y) > _CHANGE_SHARE * largest
-        for one, two in pairs
-        for x, y in zip(one, two, strict=True)
-    )
