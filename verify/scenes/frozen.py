@@ -18,7 +18,6 @@ from pydantic import (
 )
 
 from verify.prose import Prose
-from verify.schemes import title_of_scheme
 
 Real = Annotated[float, PlainSerializer(repr, str, when_used="json")]  # of no exact value
 Seconds = Real
@@ -72,8 +71,11 @@ class TitledScheme:
 
     @property
     def scheme_title(self) -> str:
-        """The name of the scheme there; see `verify.schemes.title_of_scheme`."""
-        return title_of_scheme(self.scheme)
+        """The title that its user gave the scheme, or of a splitting of a field its steps."""
+        from verify.schemes import separate_title
+        from verify.schemes.field_splitting import separate_parts
+
+        return separate_title(self.scheme)[0] or separate_parts(self.scheme)[0]
 
     @property
     def scheme_parts(self) -> str:

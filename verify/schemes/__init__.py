@@ -64,19 +64,6 @@ def separate_title(name: str) -> tuple[str, str]:
     return (match[1], match[2]) if match else ("", name)
 
 
-def title_of_scheme(name: str) -> str:
-    """Return a scheme's name for heads and legends.
-
-    It is the title that its user gave it; of a splitting of a field its steps, without the parts.
-
-    >>> title_of_scheme("mine: kick 1; drift 1"), title_of_scheme("A 1 with A: x_dot = 1")
-    ('mine', 'A 1')
-    """
-    from verify.schemes.field_splitting import separate_parts
-
-    return separate_title(name)[0] or separate_parts(name)[0]
-
-
 def _get_titled(title: str, text: str) -> "Scheme":
     if not text.strip() or separate_title(text)[0]:
         raise InputError("scheme", f"{title}: {text}", "has no scheme behind its one title")
