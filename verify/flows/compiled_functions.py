@@ -75,7 +75,7 @@ def _energy(hamiltonian: Hamiltonian, digits: int) -> tuple[Arithmetic, Function
 
 @dataclass(frozen=True)
 class ElementCode:
-    """Ring elements in the variables `names` alone, as lines of code.
+    """Ring elements in some variables alone, as lines of code in which these are called `names`.
 
     `static`: the lines before a loop, and `dynamic` those in it. `values`: the names of the
     elements' values. `namespace`: the constants and functions that the lines refer to.
@@ -93,14 +93,19 @@ class ElementCode:
         cls, arithmetic: Arithmetic, elements: Elements, names: Sequence[str]
     ) -> "ElementCode":
         program = StepProgram()
-        inputs = {name: program.input(name, static=False) for name in names}
+        # In the source the variables are z0, z1, …: a user may call a coordinate `v1` or `count`.
+        in_source = [name if name == "t" else f"z{k}" for k, name in enumerate(names)]
+        inputs = {
+            name: program.input(text, static=False)
+            for name, text in zip(names, in_source, strict=True)
+        }
         roots = [Evaluator(program, ring, inputs, False).evaluate(x) for ring, x in elements]
         lowering = Lowering(program, arithmetic.functions)
         static, dynamic = lowering.lines(roots)
         constants = lowering.named_constants(arithmetic.number)
         values = [lowering.name(root) for root in roots]
         return cls(
-            arithmetic, names, static, dynamic, values, {**arithmetic.functions, **constants}
+            arithmetic, in_source, static, dynamic, values, {**arithmetic.functions, **constants}
         )
 
     def build_function(self) -> Function:

@@ -21,6 +21,12 @@ CASES: dict[str, tuple[tuple[str, ...], tuple[str, ...], Slopes]] = {
         ("-q2", "-q1*q2", "p1", "2*p2"),
         lambda p1, p2, q1, q2: (-q2, -q1 * q2, p1, 2 * p2),
     ),
+    # The names are those that the source has for its own variables.
+    "names of the source": (
+        ("x", "count", "v0", "k", "v1"),
+        ("v0", "v1*k", "-x", "x", "-count*x"),
+        lambda x, count, v0, k, v1: (v0, v1 * k, -x, x, -count * x),
+    ),
     "constant": (("p", "q", "t"), ("1/3", "t"), lambda _p, _q, t: (Fraction(1, 3), t)),
 }
 
