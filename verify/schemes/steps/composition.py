@@ -27,7 +27,9 @@ def compose(field: VectorField, outer: Sequence[Series], step: State) -> list[Se
     for x in outer:
         total = Series.from_coefficients(ring, [], x.most)
         for n, coefficient in enumerate(x.coefficients):
-            total += expand_at(Derivatives(ring, coefficient), moves, x.most).shift(n)
+            # Of hⁿ times a series no more is needed than its terms up to h^(most − n).
+            moved = expand_at(Derivatives(ring, coefficient), moves, x.most - n)
+            total += Series.from_coefficients(ring, moved.coefficients, x.most).shift(n)
         results.append(total)
     return results
 
