@@ -26,7 +26,7 @@ from verify.calls.inputs import hamiltonian_from
 from verify.errors import NOT_GIVEN, InputError, unknown_name
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.results import MOST_CLAIMED, Claims, Finding
-from verify.integrators.step_check import check_integrator
+from verify.integrators.step_check import check_step
 from verify.integrators.user_code.loading import callee_from
 from verify.integrators.user_code.step import TIME_LIMIT
 from verify.verdict import Verdict
@@ -156,7 +156,7 @@ def _assert_claims(
         step, system.coordinates, arguments=options.get("arguments"),
         parameters=dict(system.values), time_limit=options.get("time_limit", TIME_LIMIT),
     )  # fmt: skip
-    finding = check_integrator(callee, system, claims, request_of(system, **places))
+    finding = check_step(callee, system, claims, (), request_of(system, **places))
     # UNDECIDED counts as a failure: an assertion that nothing decides must not pass.
     if not finding.verdict.holds:
         raise AssertionError(_format_message(finding))

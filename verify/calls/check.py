@@ -21,8 +21,7 @@ from verify.integrators.map_claims import MapSystem, coordinates_from
 from verify.integrators.measures.survey import Request
 from verify.integrators.results import MOST_CLAIMED, Claims, Finding
 from verify.integrators.step_check import check_map as judge_map
-from verify.integrators.structure_check import check_map_keeps
-from verify.integrators.system_check import check_system
+from verify.integrators.step_check import check_step
 from verify.integrators.user_code.coordinate_layout import callee_of_coordinates
 from verify.integrators.user_code.loading import Callee, callee_from
 from verify.integrators.user_code.step import TIME_LIMIT
@@ -121,7 +120,7 @@ def check(
     claims = Claims(order=order, area_preserving=area_preserving, symplectic=symplectic)
     structures = read_claims(request, hamiltonian) if request else ()
     where = request_of(hamiltonian, p, q, step_size, within, point)
-    return check_system(callee, hamiltonian, claims, structures, where)
+    return check_step(callee, hamiltonian, claims, structures, where)
 
 
 def callee_of_system(
@@ -215,11 +214,11 @@ def check_map(
     where = Request(z=_point_of(names, point), within=tolerance)
     if request or coordinates is not None:
         try:
-            return check_map_keeps(callee, MapSystem(names, values).read(request), where)
+            return judge_map(callee, MapSystem(names, values).read(request), where)
         except InputError as error:  # it names an option of the command line
             name = error.name.removeprefix("--")
             raise type(error)(name, error.value, error.problem) from None
-    return judge_map(callee, where)
+    return judge_map(callee, (), where)
 
 
 def _point_of(names: Sequence[str], point: Sequence[Number] | None) -> tuple[Fraction, ...] | None:

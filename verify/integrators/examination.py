@@ -12,25 +12,20 @@ from functools import partial
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.clocks import clock_mistakes, measure_clock_mistakes
-from verify.integrators.measured_finding import finding_from_measurement
-from verify.integrators.measures.agreement import trace_must_agree
+from verify.integrators.measured_finding import ORDER_SEPARATOR, finding_from_measurement
 from verify.integrators.measures.probes import probe_of
-from verify.integrators.measures.structure_measurement import StructureMeasurement
 from verify.integrators.results import Finding
-from verify.integrators.trace_proof import Trace, prove_map, prove_step, trace_of
+from verify.integrators.trace_proof import Trace, prove_map, prove_order, prove_step
 from verify.integrators.trial import Trial
-from verify.integrators.user_code.step import StepError, describe_error, limit_time
-from verify.prose import Prose, join_prose, prose
+from verify.integrators.user_code.step import describe_error, limit_time
+from verify.prose import Prose, prose
 from verify.verdict import Verdict
 
 _SHARE_FOR_PROOF = 1 / 3  # a part of the time that is left
 _CLOCK_SECONDS = 10.0
-_MAX_LISTED = 3  # names of impure objects in a message
 _MAX_PROOF_SECONDS = 20.0
 # With three degrees of freedom and more algebra seldom ends in time.
 _MAX_PROOF_SECONDS_IN_MANY_DEGREES = 6.0
-_SHARE_FOR_FLOATS = 0.4  # a part of the time that is left; dual numbers, which are slow, come first
-_ORDER_SEPARATOR = "; "  # stands in a measured reason between the order and the defect
 
 
 def examine(trial: Trial, try_proof: bool) -> Finding:
@@ -46,14 +41,12 @@ def examine(trial: Trial, try_proof: bool) -> Finding:
         limit = _MAX_PROOF_SECONDS if step.degrees < 3 else _MAX_PROOF_SECONDS_IN_MANY_DEGREES
         seconds = min(limit, max(step.seconds_left, 0.1) * _SHARE_FOR_PROOF)
         with limit_time(seconds, "its proof takes too long"):
-            trace = trace_of(step)
-            _must_be_pure(trace)
-            if try_proof:
-                trace_must_agree(step, trace.outputs, trial.places)
-                system = trial.hamiltonian
-                finding = prove_step(trace, system) if system else prove_map(trace, step.names)
-        if not try_proof:
+            trace = trial.trace(agrees=try_proof)
+            finding = _prove(trial, trace) if try_proof else None
+        if finding is None:
             return _measure(trial, notes)
+        if trial.of_equations:
+            return finding
         finding = _decide(finding, trial, trace)
         order = finding.convergence_order
         return finding.noting(
@@ -64,12 +57,10 @@ def examine(trial: Trial, try_proof: bool) -> Finding:
     return _measure(trial, notes)
 
 
-def _must_be_pure(trace: Trace) -> None:
-    """Raise StepError if the code reaches objects that may change from call to call."""
-    impure = trace.tape.surroundings.texts
-    if impure:
-        names = join_prose(", ", map(prose, impure[:_MAX_LISTED]))
-        raise StepError(prose("what it reaches may change from call to call: ", names))
+def _prove(trial: Trial, trace: Trace) -> Finding:
+    if trial.hamiltonian is None:
+        return prove_map(trace, trial.step.names)
+    return (prove_order if trial.of_equations else prove_step)(trace, trial.hamiltonian)
 
 
 def _decide(finding: Finding, trial: Trial, trace: Trace) -> Finding:
@@ -89,28 +80,26 @@ def _decide(finding: Finding, trial: Trial, trace: Trace) -> Finding:
     if not (is_rounded or symplecticity_open or volume_open or of_map):
         return finding
     try:
-        structure, distances = trial.measure("duals")
+        measurement = finding_from_measurement(trial, *trial.measure("duals"))
     except Exception as error:  # the user's code may raise anything
         return finding.noting(prose("not measured: ", describe_error(error)))
-    measurement = finding_from_measurement(trial, structure, distances)
     measured_finding = replace(measurement, notes=(*finding.notes, *measurement.notes))
     if of_map:
         return (
             measured_finding
             if is_rounded or symplecticity_open
-            else _refute_map(finding, measured_finding, structure)
+            else _refute_map(finding, measured_finding)
         )
     if is_rounded:
         return _combine_despite_rounding(finding, measured_finding)
     if symplecticity_open:
         return _combine_with_series(finding, measured_finding)
-    return replace(finding, area_preserving=structure.volume_kept)
+    return replace(finding, area_preserving=measured_finding.area_preserving)
 
 
 def _combine_despite_rounding(finding: Finding, measured_finding: Finding) -> Finding:
     """Combine the measured order with the proof that Ω is preserved, if there is one."""
-    # `measured_finding._of_step` joins the texts of the order and of the defect so.
-    order_text, _, defect_text = measured_finding.reason.partition(_ORDER_SEPARATOR)
+    order_text, _, defect_text = measured_finding.reason.partition(ORDER_SEPARATOR)
     exact_order = finding.convergence_order
     clause = "but for the rounding of its coefficients"
     if exact_order is not None and exact_order != measured_finding.convergence_order:
@@ -143,14 +132,12 @@ def _combine_with_series(finding: Finding, measured_finding: Finding) -> Finding
     )
 
 
-def _refute_map(
-    finding: Finding, measured_finding: Finding, structure: StructureMeasurement
-) -> Finding:
+def _refute_map(finding: Finding, measured_finding: Finding) -> Finding:
     """Refute a map by algebra if the measurement shows its defect too; else return the measured
     finding, since a refutation needs a place at which anybody can see it."""
     volume = finding.area_preserving
     if volume is None:
-        volume = structure.volume_kept
+        volume = measured_finding.area_preserving
     # By algebra S is not 0, but it is too small for doubles to show.
     if measured_finding.symplectic is not False:
         return measured_finding
@@ -168,23 +155,19 @@ def _note_clock(trial: Trial, find_mistakes: Callable[[Hamiltonian], list[str]])
 
     The analysis exists in the plane alone, for an H that depends on t.
     """
-    if trial.hamiltonian is None or not trial.step.time_dependent or trial.step.degrees > 1:
+    step, system = trial.step, trial.hamiltonian
+    if system is None or trial.of_equations or not step.time_dependent or step.degrees > 1:
         return []
     try:
         with limit_time(_CLOCK_SECONDS, "its clock takes too long"):
-            return find_mistakes(trial.hamiltonian)
+            return find_mistakes(system)
     except Exception:  # the user's code may raise anything
         return []
 
 
 def _measure(trial: Trial, notes: list[Prose]) -> Finding:
     """Return the finding of the first kind of probe that works; each failure becomes a note."""
-    step = trial.step
-    # The dual numbers come first. Some of the time is held back from them, and given back before
-    # the floats begin.
-    reserve = 0.0 if step.foreign else _SHARE_FOR_FLOATS * max(step.seconds_left, 0)
-    for how in step.probe_kinds:
-        step.hold_back(reserve if how == "duals" else -reserve)
+    for how in trial.step.try_probes():
         try:
             finding = finding_from_measurement(trial, *trial.measure(how))
             finding = replace(finding, notes=(*notes, *finding.notes))
@@ -193,7 +176,8 @@ def _measure(trial: Trial, notes: list[Prose]) -> Finding:
         except Exception as error:  # the user's code may raise anything
             notes.append(prose(f"not measured with {how}: ", describe_error(error)))
     message = prose("it can be neither traced nor measured")
-    return Finding(Verdict.UNDECIDED, message, how="calls", degrees=step.degrees).noting(*notes)
+    finding = Finding(Verdict.UNDECIDED, message, how="calls", degrees=trial.step.degrees)
+    return finding.noting(*notes)
 
 
 def _find_clock_mistakes(

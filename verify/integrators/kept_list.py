@@ -6,10 +6,11 @@ measured at two places. The list changes no verdict.
 
 from collections.abc import Sequence
 from dataclasses import replace
+from fractions import Fraction
 
 from verify.algebra.formula import symbol
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.measures.kept_measurement import KeptMeasurement, KeptSurvey
+from verify.integrators.measures.kept_measurement import KeptSurvey
 from verify.integrators.measures.probes import probe_of
 from verify.integrators.places.trial_places import TrialPlace, select_spread
 from verify.integrators.results import Finding, KeptStructure
@@ -23,7 +24,7 @@ from verify.structures.volume import Volume
 from verify.verdict import Verdict
 
 _MOST_PLACES = 2
-_DIVISORS = 4, 16, 32, 64, 128, 256  # of a place's largest step
+_DIVISORS = tuple(map(Fraction, (4, 16, 32, 64, 128, 256)))  # of a place's largest step
 _SHARE_OF_TIME = 0.5  # that has to be left
 
 
@@ -68,7 +69,7 @@ def _measure(
     survey = KeptSurvey(probe, select_spread(places, _MOST_PLACES))
     keeps = []
     for structure in structures:
-        measurement = _follow(survey, structure)
+        measurement = survey.follow(structure, survey.places, _DIVISORS)
         vanishes = measurement.vanishes
         power = None if vanishes else measurement.power
         if vanishes is not None and (vanishes or power or isinstance(structure, Reversible)):
@@ -88,20 +89,6 @@ def _structures(step: UserMap, system: Hamiltonian | None) -> list[Structure]:
     energy = FirstIntegral("energy", "energy", system.exact)
     is_even = system.exact.xreplace(momenta) == system.exact
     return [reversible, energy] if is_even else [energy]
-
-
-def _follow(survey: KeptSurvey, structure: Structure) -> KeptMeasurement:
-    """Return the readings at the places, as h falls."""
-    ladder = []
-    for place in survey.places:
-        divisors = _DIVISORS if place.step else _DIVISORS[:1]
-        readings = [
-            x for k in divisors if (x := survey.read(structure, place, place.step / k, sharp=True))
-        ]
-        ladder.append(tuple(readings))
-    flat = tuple(x for readings in ladder for x in readings)
-    counts = tuple((0,) * len(readings) for readings in ladder)
-    return KeptMeasurement(structure, survey.probe.how, flat, tuple(ladder), counts)
 
 
 def _describe(keeps: Sequence[KeptStructure]) -> Prose | None:

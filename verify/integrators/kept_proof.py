@@ -19,10 +19,9 @@ from verify.hamiltonians.equations import Equations
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.kept_structures import from_proof
 from verify.integrators.results import KeptStructure
-from verify.integrators.trace_proof import Trace, domain_of, embed_closed_form
+from verify.integrators.trace_proof import Trace, domain_of, embed_closed_form, order_of
 from verify.integrators.tracing.traced_map import traced_map
 from verify.integrators.user_code.step import limit_time
-from verify.proof.order_for_one_h import convergence_of_scheme
 from verify.proof.structures.structure_order import prove_structure
 from verify.proof.structures.structure_values import closed_values
 from verify.prose import read_prose
@@ -56,10 +55,8 @@ def prove_step(
             return None
         return from_proof(proof, domain)
 
-    convergence = time_left.limit(lambda: convergence_of_scheme(step_map, None)[0])
-    proofs = [time_left.limit(partial(prove, claim)) for claim in claims]
-    is_decided = convergence is not None and convergence.decided and not tape.rounded
-    return proofs, convergence.order if convergence and is_decided else None
+    order = time_left.limit(lambda: order_of(step_map, trace))
+    return [time_left.limit(partial(prove, claim)) for claim in claims], order
 
 
 def prove_map(

@@ -6,11 +6,11 @@ from fractions import Fraction
 
 from verify.algebra.domain import FormulaDomain
 from verify.integrators.measures.kept_measurement import KeptMeasurement
-from verify.integrators.measures.kept_readings import CLEAR_RATIO, KeptReading
+from verify.integrators.measures.measurement import REFUTING_RATIO
 from verify.integrators.measures.measurement_notes import describe_numbers
-from verify.integrators.measures.structure_measurement import REFUTING_RATIO
-from verify.integrators.results import Counterexample, KeptStructure
-from verify.integrators.trial import find_slow_shrinking
+from verify.integrators.measures.reading import KeptReading
+from verify.integrators.results import KeptStructure
+from verify.integrators.trial import counterexample_at, find_slow_reading
 from verify.integrators.user_code.user_map import UserMap
 from verify.proof.structures.structure_order import StructureProof
 from verify.prose import Prose, prose, read_prose
@@ -67,10 +67,10 @@ def judge(
     kept = KeptStructure(
         structure, Verdict.UNDECIDED, prose(), measurement.how, claim.order, vanishes, power,
         largest=None if worst is None else worst.largest[1].defect,
-        probe_error=None if worst is None else worst.row[2],
+        probe_error=None if worst is None else worst.blur,
         component="" if worst is None or vanishes else worst.largest[0],
     )  # fmt: skip
-    if worst is None or (vanishes is None and worst.ratio <= CLEAR_RATIO):
+    if worst is None or (vanishes is None and worst.ratio <= worst.clear_ratio):
         return replace(kept, reason=_hidden(structure, measurement))
     if vanishes:
         scope = "place and step size" if step.takes_step_size else "place"
@@ -95,8 +95,9 @@ def judge(
     if _turns_orientation(structure, measurement):
         return _with(kept, Verdict.UNDECIDED, "det J is −1: the size of a volume is kept, and its "
                      "orientation turned")  # fmt: skip
-    kept = _with(kept, Verdict.REFUTED, text)
-    return replace(kept, counterexample=_counterexample(step, structure, worst))
+    name, x = worst.largest
+    example = counterexample_at(step, worst.place, worst.h, _quantity(structure, name), str(x))
+    return replace(_with(kept, Verdict.REFUTED, text), counterexample=example)
 
 
 def _with(kept: KeptStructure, verdict: Verdict, text: str) -> KeptStructure:
@@ -117,12 +118,7 @@ def _judge_order(
     elif power >= claimed:
         return _with(kept, Verdict.MEASURED, f"`{formula}` shrinks as `h^{power}`")
     quantity = f"|{_quantity(kept.structure, kept.component)}|, in natural units,"
-    examples = (
-        find_slow_shrinking(step, rows[0].place, [x.row for x in rows], claimed, quantity)
-        for rows in measurement.ladder
-        if rows
-    )
-    example = next((x for x in examples if x is not None), None)
+    example = find_slow_reading(step, measurement.ladder, claimed, quantity)
     if power is None:
         return replace(kept, counterexample=example)  # for a proof that refutes the order
     verdict = Verdict.UNDECIDED if example is None else Verdict.REFUTED
@@ -131,7 +127,7 @@ def _judge_order(
 
 
 def _hidden(structure: Structure, measurement: KeptMeasurement) -> Prose:
-    noise = max(x.row[2] for x in measurement.readings)
+    noise = max(x.blur for x in measurement.readings)
     return read_prose(
         f"whether `{structure.defect_formula}` is 0 is hidden by the noise of its numbers, "
         f"`{noise:.1e}` of its natural size"
@@ -160,7 +156,7 @@ def _wraps(structure: Structure, measurement: KeptMeasurement) -> bool:
     if not isinstance(structure, Reversible | Symmetric):
         return False
     components = [x for reading in measurement.seen for x in reading.components.values()]
-    turns = [(x, x.value / (2 * math.pi)) for x in components if x.ratio > CLEAR_RATIO]
+    turns = [(x, x.value / (2 * math.pi)) for x in components if x.ratio > KeptReading.clear_ratio]
     return all(
         0.5 < abs(y) < _MOST_TURNS and abs(y - round(y)) < _TURN_TOLERANCE * abs(y)
         for _, y in turns
@@ -179,15 +175,3 @@ def _turns_orientation(structure: Structure, measurement: KeptMeasurement) -> bo
 def _quantity(structure: Structure, component: str) -> str:
     """Return the name of a component of the defect."""
     return f"{structure.defect_formula}{f', {component}' if component else ''}"
-
-
-def _counterexample(step: UserMap, structure: Structure, reading: KeptReading) -> Counterexample:
-    name, x = reading.largest
-    return Counterexample(
-        dict(zip(step.names, reading.place.z, strict=True)),
-        reading.h if step.takes_step_size else None,
-        _quantity(structure, name),
-        f"{x.value:.6e} ± {x.noise:.1e}",
-        "0",
-        reading.place.t if step.time_dependent else None,
-    )

@@ -11,6 +11,7 @@ from fractions import Fraction
 from verify.arithmetic.exact import plain
 from verify.integrators.measures.distances import Distances, PlaceOrder
 from verify.integrators.measures.error_powers import ENOUGH_SLOPES
+from verify.integrators.measures.measurement import REFUTING_RATIO
 from verify.integrators.measures.measurement_notes import (
     describe_numbers,
     describe_places,
@@ -19,20 +20,21 @@ from verify.integrators.measures.measurement_notes import (
     note_unseen,
 )
 from verify.integrators.measures.sides import Sides
-from verify.integrators.measures.structure_measurement import REFUTING_RATIO, StructureMeasurement
+from verify.integrators.measures.structure_measurement import StructureMeasurement
 from verify.integrators.measures.survey import Request
 from verify.integrators.places.trial_places import SIDE, USER
 from verify.integrators.places.wrap_periods import describe_periods
 from verify.integrators.results import Claims, Finding
 from verify.integrators.trial import Trial
 from verify.integrators.user_code.user_map import UserMap
-from verify.prose import prose, read_prose
+from verify.prose import Prose, join_prose, prose, read_prose
 from verify.structures import structure_in
 from verify.verdict import Verdict
 
 # If the flow moves a shorter distance, in units of the place, an error would hardly show.
 _MIN_VISIBLE_DISTANCE = 1e-3
 _SHOWN_SLOPES = 8
+ORDER_SEPARATOR = "; "  # stands in a reason between the order and the defect
 
 
 @dataclass(frozen=True)
@@ -48,90 +50,69 @@ class _Order:
 
 
 def finding_from_measurement(
-    trial: Trial, structure: StructureMeasurement, distances: Distances | None
+    trial: Trial, structure: StructureMeasurement | None, distances: Distances | None
 ) -> Finding:
     """Build the finding on the order of a step, and on Ω; for a map, without `distances`, on Ω
-    alone."""
-    step, is_kept = trial.step, structure.is_kept(trial.request.within)
-    defect_text = _describe_structure(step, structure, is_kept, trial.request)
-    finding = (
-        _finding_of_map(step, structure, is_kept, defect_text)
-        if distances is None
-        else _finding_of_step(trial, structure, distances, is_kept, defect_text)
-    )
-    return _check_consistency(finding.noting(*map(read_prose, note_sides(structure))))
+    alone, and for equations, without `structure`, on the order alone."""
+    if structure is not None:
+        finding = _finding_on_structure(trial, structure)
+    else:
+        places = describe_places(trial.step, trial.places)
+        finding = Finding(
+            Verdict.MEASURED, Prose(), "calls", trial.step.degrees, domain=(str(places),),
+            places=tuple(trial.places),
+        )  # fmt: skip
+    if distances is not None:
+        finding = _add_order(finding, trial, structure, distances)
+    notes = note_sides(structure) if structure is not None else []
+    return _check_consistency(finding.noting(*map(read_prose, notes)))
 
 
-def _finding_of_map(
-    step: UserMap, structure: StructureMeasurement, is_kept: bool | None, text: str
-) -> Finding:
+def _finding_on_structure(trial: Trial, structure: StructureMeasurement) -> Finding:
+    """Return the finding on Ω; of a step, without its order."""
+    step, reading = trial.step, structure.largest
+    is_kept = structure.is_kept(trial.request.within)
     verdict = {True: Verdict.MEASURED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}[is_kept]
-    if is_kept is False:
-        # In several degrees of freedom det J = 1 is weaker than JᵀΩJ = Ω: the reason tells if a map
-        # that is not symplectic preserves volume.
-        only_volume = step.degrees > 1 and structure.volume_kept
-        volume = "; det J is 1 all the same" if only_volume else ""
-        entry = step.entry_name(structure.largest.largest_entry)
-        text = f"it is not symplectic: the entry {entry} of S is not 0{volume}"
-    return _base_finding(step, structure, verdict, text, is_kept)
+    entry = step.entry_name(reading.largest[0]) if is_kept is False else ""
+    text = _describe_structure(step, structure, is_kept, trial.request)
+    # In several degrees of freedom det J = 1 is weaker than JᵀΩJ = Ω.
+    volume = is_kept if step.degrees == 1 else is_kept or structure.volume_kept
+    if trial.hamiltonian is None and is_kept is False:
+        only_volume = "; det J is 1 all the same" if volume else ""
+        text = f"it is not symplectic: the entry {entry} of S is not 0{only_volume}"
+    places = tuple(dict.fromkeys(x.place for x in structure.readings))
+    return Finding(
+        verdict, read_prose(text), structure.how, step.degrees, symplectic=is_kept,
+        area_preserving=volume, largest=reading.defect, probe_error=structure.noise,
+        against=reading, entry=entry, domain=(str(describe_places(step, places)),),
+        notes=tuple(map(read_prose, note_places(step, structure))), places=places,
+    )  # fmt: skip
 
 
-def _finding_of_step(
-    trial: Trial,
-    structure: StructureMeasurement,
-    distances: Distances,
-    is_kept: bool | None,
-    text: str,
+def _add_order(
+    finding: Finding, trial: Trial, structure: StructureMeasurement | None, distances: Distances
 ) -> Finding:
-    step, order = trial.step, judge_order(distances, structure.sides, trial.claims)
-    verdict, reason = Verdict.MEASURED, order.text
+    """Add the order of a step, with the verdict on it as a scheme."""
+    step, is_kept = trial.step, finding.symplectic
+    sides = Sides(step.names) if structure is None else structure.sides
+    order = _judge_order(distances, sides, trial.claims)
+    verdict, reason = Verdict.MEASURED, read_prose(order.text)
     # A scheme agrees with the flow up to h at least. With an order below 1 the map approximates
     # another flow, or none, however well it preserves Ω.
     if order.order is not None and order.decided and order.order < 1:
-        verdict, reason = Verdict.REFUTED, f"not a scheme for this H: {reason}"
-    elif is_kept is None or not order.decided:
+        system = "these equations" if trial.of_equations else "this H"
+        verdict, reason = Verdict.REFUTED, prose(f"not a scheme for {system}: ", reason)
+    elif not order.decided or (structure is not None and is_kept is None):
         verdict = Verdict.UNDECIDED
-    finding = _base_finding(step, structure, verdict, f"{reason}; {text}", is_kept)
-    finding = replace(
-        finding,
+    notes = [*describe_periods(step.names, distances.periods), *order.notes]
+    return replace(
+        finding, verdict=verdict, how=distances.how,
+        reason=join_prose(ORDER_SEPARATOR, [x for x in (reason, finding.reason) if x]),
         # `order` is that of the defect, which is 0 if the map preserves Ω.
-        order=None if is_kept else structure.power,
-        convergence_order=order.order,
-        order_decided=order.decided,
+        order=None if is_kept or structure is None else structure.power,
+        convergence_order=order.order, order_decided=order.decided,
         domain=(*order.domain, *finding.domain),
-    )
-    notes = describe_periods(step.names, distances.periods)
-    return finding.noting(*map(read_prose, [*notes, *order.notes, *note_unseen(step, distances)]))
-
-
-def _base_finding(
-    step: UserMap,
-    structure: StructureMeasurement,
-    verdict: Verdict,
-    text: str,
-    is_kept: bool | None,
-) -> Finding:
-    reading = structure.largest
-    places = tuple(dict.fromkeys(x.place for x in structure.readings))
-    return Finding(
-        verdict,
-        read_prose(text),
-        structure.how,
-        step.degrees,
-        symplectic=is_kept,
-        area_preserving=is_kept
-        if step.degrees == 1
-        else True
-        if is_kept
-        else structure.volume_kept,
-        largest=reading.defect,
-        probe_error=structure.noise,
-        against=reading,
-        entry=step.entry_name(reading.largest_entry) if is_kept is False else "",
-        domain=(str(describe_places(step, places)),),
-        notes=tuple(map(read_prose, note_places(step, structure))),
-        places=places,
-    )
+    ).noting(*map(read_prose, [*notes, *note_unseen(step, distances)]))  # fmt: skip
 
 
 # -- the structure --------------------------------------------------------------------------------
@@ -159,7 +140,7 @@ def _describe_structure(
         scope = "place and step size" if step.takes_step_size else "place"
         bound = _format_size(max(largest, noise))
         return f"|{name}| ≤ {bound} at every {scope}, within the noise of {numbers}"
-    if is_kept is None and structure.worst.beyond <= REFUTING_RATIO:
+    if is_kept is None and structure.ratio <= REFUTING_RATIO:
         if noise > 1e-7:
             return f"{name} is hidden by the probe's own error, `{noise:.1e}`"
         return f"|{name}| ≤ {size}, where the noise of its numbers is `{noise:.1e}`"
@@ -181,7 +162,7 @@ def _format_size(x: float) -> str:
 # -- the order ------------------------------------------------------------------------------------
 
 
-def judge_order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
+def _judge_order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
     places = distances.places
     if all(x.exact for x in places):
         if max(x.distance for x in places) < _MIN_VISIBLE_DISTANCE:

@@ -38,7 +38,7 @@ def prepare_step(
 ) -> tuple[list[TrialPlace], list[str]]:
     """Settle the layout of a step; return the places, none where there is no motion, and notes.
 
-    Raises InputError as `check_integrator` does.
+    Raises InputError as `check_step` does.
     """
     if hamiltonian.symbols:
         raise InputError("parameter", hamiltonian.symbols[0], "has no value; a step needs one")

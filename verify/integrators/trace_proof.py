@@ -21,6 +21,7 @@ from verify.algebra.formula import symbol
 from verify.algebra.limits import check_expression
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.exact import text
+from verify.effort import MAX_CALLS, answer_unless_long
 from verify.functions import by_name
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.results import Finding
@@ -30,9 +31,10 @@ from verify.integrators.tracing.traced_map import traced_map
 from verify.integrators.user_code.step import StepError, lift_numbers
 from verify.integrators.user_code.user_map import UserMap
 from verify.proof.expansion import MOST_ORDERS
-from verify.proof.order_for_one_h import prove
+from verify.proof.order_for_one_h import convergence_of_scheme, prove
 from verify.prose import Prose, prose, read_prose
 from verify.schemes.maps import closed_form
+from verify.schemes.maps.step_map import StepMap
 from verify.verdict import Verdict
 
 # Operations of a map without an H, written out as trees, up to which a closed form is tried.
@@ -94,7 +96,9 @@ def prove_step(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
     text, fields = "traced with symbols", dict[str, Any]()
     if proof.planar:  # closed forms and a bound of the order are reported in the plane alone
         text, power = f"{text}; the map {traced.how}", proof.first.power
-        fields = {"area_at_least": power or MOST_ORDERS + 1, "delta_j": proof.step_map.delta_j_text}
+        # That of many iterations is a formula of a million characters.
+        delta_j = answer_unless_long(lambda: proof.step_map.delta_j_text, None, MAX_CALLS)
+        fields = {"area_at_least": power or MOST_ORDERS + 1, "delta_j": delta_j}
     return Finding(
         proof.verdict,
         proof.reason,
@@ -112,6 +116,27 @@ def prove_step(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
         entry=proof.entry,
         **fields,
     )
+
+
+def order_of(step_map: StepMap, trace: Trace) -> int | None:
+    """Return the order of a traced step; None where that is open, as with rounded numbers."""
+    convergence = convergence_of_scheme(step_map, None)[0]
+    return convergence.order if convergence.decided and not trace.tape.rounded else None
+
+
+def prove_order(trace: Trace, system: Hamiltonian) -> Finding:
+    """Prove the order of a step for equations without an H. Raises StepError if that is open."""
+    step_map = traced_map(system, trace.outputs).step_map
+    order = order_of(step_map, trace)
+    if order is None:
+        raise StepError("its order is not decided")
+    lead = "" if order else "not a scheme for these equations: "
+    return Finding(
+        Verdict.PROVED if order else Verdict.REFUTED,
+        read_prose(f"{lead}the map agrees with the exact flow up to `h^{order}`"),
+        "proof", len(system.coordinates) // 2, convergence_order=order, order_decided=True,
+        domain=(step_map.domain & domain_of(trace.tape)).texts, notes=tuple(notes_of(trace.tape)),
+    )  # fmt: skip
 
 
 # -- a map without an H ---------------------------------------------------------------------------

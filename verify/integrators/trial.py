@@ -10,45 +10,84 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import pairwise
+from typing import Any
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.measures.agreement import must_agree
-from verify.integrators.measures.distances import Distances, PlaceOrder, distances_of
-from verify.integrators.measures.probes import DualProbe, probe_of
-from verify.integrators.measures.reading import DefectReading
-from verify.integrators.measures.structure_measurement import (
-    REFUTING_RATIO,
-    StructureMeasurement,
-    structure_of,
-)
+from verify.integrators.measures.agreement import must_agree, trace_must_agree
+from verify.integrators.measures.distances import Distances, distances_of
+from verify.integrators.measures.error_powers import Row
+from verify.integrators.measures.measurement import REFUTING_RATIO
+from verify.integrators.measures.probes import DualProbe, Probe, probe_of
+from verify.integrators.measures.reading import DefectReading, Reading
+from verify.integrators.measures.structure_measurement import StructureMeasurement, structure_of
 from verify.integrators.measures.survey import NO_REQUEST, Request
 from verify.integrators.places.trial_places import TrialPlace
 from verify.integrators.results import NO_CLAIMS, Claims, Counterexample, Finding, judge_claims
+from verify.integrators.trace_proof import Trace, trace_of
+from verify.integrators.user_code.step import StepError
 from verify.integrators.user_code.user_map import UserMap
 from verify.prose import Prose, join_prose, prose
+from verify.structures.reading import ClaimedStructure
 from verify.verdict import Verdict
 
-# The structure, and the distances from the exact flow; None for a map, which has no H.
-Measurement = tuple[StructureMeasurement, Distances | None]
+# The structure, None for equations; and the distances from the exact flow, None for a map.
+Measurement = tuple[StructureMeasurement | None, Distances | None]
 # A quantity refutes a power of h if its slope is lower by this number; the higher terms of a
 # correct step change a slope by less.
 _REFUTING_DEFICIT = 0.4
 _CLEAR_SHARE = 0.8  # a deficit is clear if it is this part of the largest deficit
 _NOISE_FACTOR = 10  # a value shows a power only if it is larger than its noise by this factor
+_MAX_LISTED = 3  # names of impure objects in a message
 _MAX_PLACES_SHOWN = 3  # failing places at which a counterexample is looked for
 _VERDICTS = {"proof": Verdict.PROVED, "duals": Verdict.MEASURED, "floats": Verdict.MEASURED}
 
 
 @dataclass
 class Trial:
-    """A user's step or map, the H that it is for, and the places at which it is tried."""
+    """A user's step or map, the system that it is for, the places at which it is tried, and what is
+    claimed: of the map, and of the structures that it keeps."""
 
     step: UserMap
     hamiltonian: Hamiltonian | None
     places: list[TrialPlace]
     claims: Claims = NO_CLAIMS
     request: Request = NO_REQUEST
+    keeps: Sequence[ClaimedStructure] = ()
+    _trace: Trace | None = field(default=None, init=False, repr=False)
     _last: Measurement | None = field(default=None, init=False, repr=False)
+
+    @property
+    def of_equations(self) -> bool:
+        """True of a step for equations without an H."""
+        return self.hamiltonian is not None and self.hamiltonian.energy is None
+
+    def trace(self, *, agrees: bool = True) -> Trace:
+        """Call the step with symbols, and return the trace, which `agrees` with the step's floats.
+
+        Raises StepError if the code reaches objects that may change from call to call,
+        UntraceableError, and what the user's code raises.
+        """
+        if self._trace is None:
+            trace = trace_of(self.step)
+            if impure := trace.tape.surroundings.texts:
+                names = join_prose(", ", map(prose, impure[:_MAX_LISTED]))
+                raise StepError(prose("what it reaches may change from call to call: ", names))
+            if not agrees:
+                return trace
+            trace_must_agree(self.step, trace.outputs, self.places)
+            self._trace = trace
+        return self._trace
+
+    def probe(self, how: str) -> Probe:
+        """Return the probe called `how`, "duals" or "floats", for this step.
+
+        Raises UntraceableError if dual numbers take another branch of the code than floats do: they
+        would then measure another map.
+        """
+        probe = probe_of(self.step, how)
+        if isinstance(probe, DualProbe):
+            must_agree(probe, self.places)
+        return probe
 
     def measure(self, how: str, ladder: Sequence[Fraction] = ()) -> Measurement:
         """Measure the structure and the distances, by dual numbers or by floats.
@@ -56,15 +95,13 @@ class Trial:
         `how`: the kind of probe, "duals" or "floats". `ladder`: step sizes in place of the usual
         ones. Raises StepError, and what the user's code raises.
         """
-        probe = probe_of(self.step, how)
-        if isinstance(probe, DualProbe):
-            # Dual numbers may take another branch of the code than floats do: they would then
-            # measure another map.
-            must_agree(probe, self.places)
-        structure, distances = structure_of(self.step, probe, self.places), None
-        if self.hamiltonian is not None:
+        probe, system = self.probe(how), self.hamiltonian
+        structure, distances, places = None, None, self.places
+        if not self.of_equations:
+            structure = structure_of(self.step, probe, places)
             places = list(dict.fromkeys(x.place for x in structure.readings))
-            distances = distances_of(self.step, probe, self.hamiltonian, places, ladder)
+        if system is not None:
+            distances = distances_of(self.step, probe, system, places, ladder)
         self._last = structure, distances
         return self._last
 
@@ -140,20 +177,13 @@ def counterexample(name: str, trial: Trial) -> Counterexample | None:
     """Return a counterexample to the claim of that name; None if no place shows it."""
     (structure, distances), step = trial.evidence or (None, None), trial.step
     if name in ("det J ≡ 1", "that it is symplectic"):
-        if structure is None or structure.worst.beyond <= REFUTING_RATIO:
+        if structure is None or structure.ratio <= REFUTING_RATIO:
             return None
-        # Among the readings that refute the claim, the one with the largest defect is the easiest
-        # to confirm by hand.
-        clear = [x for x in structure.readings if x.beyond > REFUTING_RATIO]
-        return counterexample_of_reading(step, max(clear, key=lambda x: x.defect), name)
+        # The reading with the largest defect is the easiest to confirm by hand.
+        return counterexample_of_reading(step, structure.largest, name)
     if name.startswith("ΔJ"):
-        power = trial.claims.area_order or 1
-        ladders = zip(structure.ladder, structure.rows, strict=True) if structure else ()
-        candidates = [
-            find_slow_shrinking(step, place, list(rows), power, "|det J − 1|")
-            for place, rows in ladders
-        ]
-        return next((x for x in candidates if x is not None), None)
+        ladder = structure.ladder if structure else ()
+        return find_slow_reading(step, ladder, trial.claims.area_order or 1, "|det J − 1|")
     return counterexample_of_order(step, distances, trial.claims.order or 1)
 
 
@@ -166,34 +196,48 @@ def counterexample_of_order(
         # The places of the lowest power come first, those without a power last.
         key=lambda x: x.power if x.power is not None else 99,
     )
-    candidates = [_counterexample_of_place(step, x, order + 1) for x in failing[:_MAX_PLACES_SHOWN]]
+    quantity = "the distance of {}' from the exact flow after one step"
+    candidates = (
+        find_slow_shrinking(step, x.place, x.rows, order + 1, quantity.format(x.component))
+        for x in failing[:_MAX_PLACES_SHOWN]
+    )
     return next((x for x in candidates if x is not None), None)
 
 
 def counterexample_of_reading(step: UserMap, reading: DefectReading, name: str) -> Counterexample:
     """Build the counterexample of a reading in which an entry of S, or det J − 1, is not 0."""
-    z = dict(zip(step.names, reading.place.z, strict=True))
-    h = reading.h if step.takes_step_size else None
-    t = reading.place.t if step.time_dependent else None
-    if step.degrees == 1 or (
-        name == "det J ≡ 1" and abs(reading.volume) > REFUTING_RATIO * reading.volume_noise
-    ):
+    of_volume = name == "det J ≡ 1" and abs(reading.volume) > REFUTING_RATIO * reading.volume_noise
+    if step.degrees == 1 or of_volume:
         value = f"{reading.volume:.6e} ± {reading.volume_noise:.1e}"
-        return Counterexample(z, h, "det J − 1", value, "0", t)
-    indices = reading.largest_entry
-    value = f"{reading.entries[indices]:.6e} ± {reading.noise[indices]:.1e}"
-    return Counterexample(z, h, f"the entry {step.entry_name(indices)} of S", value, "0", t)
+        return counterexample_at(step, reading.place, reading.h, "det J − 1", value)
+    indices, x = reading.largest
+    quantity = f"the entry {step.entry_name(indices)} of S"
+    return counterexample_at(step, reading.place, reading.h, quantity, str(x))
 
 
-def _counterexample_of_place(
-    step: UserMap, place_order: PlaceOrder, power: int
+def counterexample_at(
+    step: UserMap, place: TrialPlace, h: Fraction, quantity: str, value: str, expected: str = "0"
+) -> Counterexample:
+    """Build the counterexample of a quantity at a place."""
+    z, t = dict(zip(step.names, place.z, strict=True)), place.t if step.time_dependent else None
+    return Counterexample(z, h if step.takes_step_size else None, quantity, value, expected, t)
+
+
+def find_slow_reading(
+    step: UserMap, ladder: Sequence[Sequence[Reading[Any]]], power: int, name: str
 ) -> Counterexample | None:
-    quantity = f"the distance of {place_order.component}' from the exact flow after one step"
-    return find_slow_shrinking(step, place_order.place, list(place_order.rows), power, quantity)
+    """Return the first counterexample among readings as h falls, of a defect that shrinks more
+    slowly than h^power."""
+    candidates = (
+        find_slow_shrinking(step, readings[0].place, [x.row for x in readings], power, name)
+        for readings in ladder
+        if readings
+    )
+    return next((x for x in candidates if x is not None), None)
 
 
 def find_slow_shrinking(
-    step: UserMap, place: TrialPlace, rows: list[tuple[float, float, float]], power: int, name: str
+    step: UserMap, place: TrialPlace, rows: Sequence[Row], power: int, name: str
 ) -> Counterexample | None:
     """Return the counterexample of a quantity that shrinks more slowly than h^power.
 
@@ -215,11 +259,5 @@ def find_slow_shrinking(
     _, h, value, bound, larger_step = next(
         pair for pair in pairs if pair[0] >= _CLEAR_SHARE * largest_deficit
     )
-    return Counterexample(
-        dict(zip(step.names, place.z, strict=True)),
-        Fraction(h),
-        name,
-        f"{value:.6e}",
-        f"about {bound:.2e} for O(h^{power}), by that at h = {Fraction(larger_step)}",
-        place.t if step.time_dependent else None,
-    )
+    expected = f"about {bound:.2e} for O(h^{power}), by that at h = {Fraction(larger_step)}"
+    return counterexample_at(step, place, Fraction(h), name, f"{value:.6e}", expected)

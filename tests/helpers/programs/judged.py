@@ -6,7 +6,7 @@ from typing import Any
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.measures.survey import NO_REQUEST, Request
 from verify.integrators.results import NO_CLAIMS, Claims, Finding
-from verify.integrators.step_check import check_integrator
+from verify.integrators.step_check import check_step
 from verify.integrators.user_code.loading import callee_from, foreign_callee
 from verify.integrators.user_code.user_map import UserMap
 
@@ -24,9 +24,9 @@ def judged(
     """What `verify check-integrator` finds of the function, or of a library's or program's step."""
     exact = Hamiltonian.parse(hamiltonian) if isinstance(hamiltonian, str) else hamiltonian
     if isinstance(function, UserMap):
-        return check_integrator(foreign_callee(function), exact, claims, request)
+        return check_step(foreign_callee(function), exact, claims, (), request)
     callee = callee_from(
         function, exact.coordinates, arguments=arguments, parameters=dict(exact.values),
         time_limit=limit,
     )  # fmt: skip
-    return check_integrator(callee, exact, claims, request)
+    return check_step(callee, exact, claims, (), request)

@@ -106,7 +106,7 @@ def check_integrator(
         --form "du^dv/(u*v)"
     """
     from verify.integrators.results import Claims
-    from verify.integrators.system_check import check_system
+    from verify.integrators.step_check import check_step
     from verify.structures.reading import read_structures
 
     parsed = hamiltonian_of(system, hamiltonian, params, field)
@@ -118,7 +118,7 @@ def check_integrator(
     claims = Claims(order, area_order, area_preserving, symplectic)
     structures = read_structures(keeps, parsed)
     with clock(target_name):
-        finding = check_system(callee, parsed, claims, structures, request)
+        finding = check_step(callee, parsed, claims, structures, request)
     return CommandAnswer(
         lambda: _json(parsed, target_name, finding),
         lambda: _print(parsed, target_name, finding, with_keeps=bool(structures)),

@@ -83,7 +83,6 @@ def check_map(
     from verify.hamiltonians.coordinates import check_degrees, coordinates_in
     from verify.integrators.map_claims import MapSystem, coordinates_from
     from verify.integrators.step_check import check_map as check
-    from verify.integrators.structure_check import check_map_keeps
     from verify.integrators.user_code.coordinate_layout import callee_of_coordinates
     from verify.integrators.user_code.loading import callee_from, load
 
@@ -107,11 +106,8 @@ def check_map(
         )
     with_keeps = bool(keeps) or coordinates is not None
     with clock(target):
-        if with_keeps:
-            claims = MapSystem(names, parameters).read(keeps)
-            finding = check_map_keeps(callee, claims, request)
-        else:
-            finding = check(callee, request)
+        claims = MapSystem(names, parameters).read(keeps) if with_keeps else []
+        finding = check(callee, claims, request)
     return CommandAnswer(
         lambda: _json(target, names, finding),
         lambda: _print(target, finding, with_keeps=with_keeps),

@@ -7,8 +7,8 @@ momenta (1 + δ) x', as in accelerators.
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
+from verify.integrators.measures.measurement import REFUTING_RATIO
 from verify.integrators.measures.reading import DefectReading
-from verify.integrators.measures.structure_measurement import REFUTING_RATIO
 
 if TYPE_CHECKING:
     import numpy as np
@@ -22,22 +22,21 @@ def note_constants(readings: Sequence[DefectReading], names: Sequence[str]) -> l
     pairs = [(i, half + i) for i in range(half)]
     first, others = readings[0], readings[1:]
     if not others or any(
-        abs(x.entries[at]) > REFUTING_RATIO * x.noise[at]
-        for x in readings
-        for at in x.entries
+        x.ratio > REFUTING_RATIO
+        for reading in readings
+        for at, x in reading.components.items()
         if at not in pairs
     ):
         return []
+    entries = [first.components[at] for at in pairs]
     if any(
-        abs(x.entries[at] - first.entries[at]) > REFUTING_RATIO * (x.noise[at] + first.noise[at])
-        for x in others
-        for at in pairs
+        abs(x.value - y.value) > REFUTING_RATIO * (x.noise + y.noise)
+        for reading in others
+        for x, y in zip((reading.components[at] for at in pairs), entries, strict=True)
     ):
         return []
-    factors = [1 + first.entries[at] for at in pairs]
-    if all(
-        abs(c + 1) <= REFUTING_RATIO * first.noise[at] for c, at in zip(factors, pairs, strict=True)
-    ):
+    factors = [1 + x.value for x in entries]
+    if all(abs(x.value + 2) <= REFUTING_RATIO * x.noise for x in entries):
         return [f"S = −2Ω: {_describe_turn(readings, names)}"]
     numbers = ", ".join(f"{c:.6g}" for c in factors)
     size = numbers if half == 1 else f"({numbers})"

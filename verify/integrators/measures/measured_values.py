@@ -6,7 +6,6 @@ absolute values of all terms: where they cancel, the rounding of floats is a par
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -20,9 +19,10 @@ from verify.arithmetic.exact import fraction
 from verify.arithmetic.systems import mpfr
 from verify.flows.compiled_functions import functions_at
 from verify.integrators.measures.probes import COEFFICIENT_ROUNDING, DUAL_NOISE, DualProbe, Probe
-from verify.integrators.measures.reading import READING_BITS, volume_change
+from verify.integrators.measures.reading import READING_BITS, Component, volume_change
 from verify.integrators.places.trial_places import TrialPlace
 from verify.integrators.places.wrap_periods import Periods, unwrap
+from verify.integrators.tracing.dual import Comparison
 from verify.integrators.user_code.step import StepError
 from verify.structures import Structure
 from verify.structures.volume import Volume
@@ -65,30 +65,6 @@ class Measured:
         y = other if isinstance(other, Measured) else Measured.exact(other)
         noise = abs(float(self.value)) * y.noise + (abs(float(y.value)) + y.noise) * self.noise
         return Measured(self.value * y.value, noise, self.size * y.size)
-
-
-@dataclass(frozen=True)
-class Component:
-    """A component of a defect: its value, its noise, and its natural scale at the place."""
-
-    value: float
-    noise: float
-    scale: float
-
-    @property
-    def ratio(self) -> float:
-        """The ratio of the value to its noise."""
-        return abs(self.value) / self.noise if self.noise else math.inf if self.value else 0.0
-
-    @property
-    def defect(self) -> float:
-        """The absolute value in units of the scale."""
-        return abs(self.value) / self.scale if self.scale else abs(self.value)
-
-    @property
-    def blur(self) -> float:
-        """The noise in units of the scale."""
-        return self.noise / self.scale if self.scale else self.noise
 
 
 # -- formulas --------------------------------------------------------------------------------------
@@ -146,6 +122,7 @@ class MeasuredValues:
         self.probe, self.h, self._periods = probe, h, periods
         self.sharp = sharp and isinstance(probe, DualProbe)
         self.place = place.with_rounded_state(probe.step.numbers.round_number)
+        self.comparisons: Sequence[Comparison] = ()  # of the step, once it is called
         self.names = probe.step.names
 
     def number(self, x: Fraction) -> Measured:
@@ -170,8 +147,11 @@ class MeasuredValues:
     def end(self) -> tuple[list[Fraction], list[float]]:
         """z', and its noise."""
         if self.sharp:
-            return self.probe.end(self.place, self.h), [0.0] * len(self.names)
-        return self.probe.follow(self.place, self.h)
+            z, noise = self.probe.end(self.place, self.h), [0.0] * len(self.names)
+        else:
+            z, noise = self.probe.follow(self.place, self.h)
+        self.comparisons = self.probe.comparisons
+        return z, noise
 
     @cached_property
     def jacobian(self) -> list[list[Measured]]:
@@ -180,6 +160,7 @@ class MeasuredValues:
             errors = [[0.0] * len(row) for row in rows]
         else:
             rows, errors = self.probe.jacobian(self.place, self.h)
+        self.comparisons = self.probe.comparisons
         return [
             [Measured(x, e, abs(float(x))) for x, e in zip(*row, strict=True)]
             for row in zip(rows, errors, strict=True)

@@ -110,8 +110,9 @@ def note_unseen(step: UserMap, distances: Distances) -> list[str]:
     if distances.how != "floats":
         return []
     unseen = max(x.unseen for x in distances.places)
+    moves = "p' − p or q' − q" if step.names == coordinates_in(max(step.degrees, 1)) else "z' − z"
     return [
-        f"in {describe_numbers(step, 'floats')}: an error of p' − p or q' − q below about "
+        f"in {describe_numbers(step, 'floats')}: an error of {moves} below about "
         f"`{unseen:.0e}` of them is not seen"
     ]
 
@@ -200,7 +201,7 @@ def note_masses(readings: Sequence[DefectReading], names: Sequence[str]) -> list
             row = u[:half] * v[half:] - u[half:] * v[:half]
             if b == a + half:
                 row[a] -= 1
-            rows.append(row * reading.scales[a, b])
+            rows.append(row / reading.components[a, b].scale)
     # A null vector of this system consists of masses with which Σ m dp∧dq is preserved. It must be
     # the only one, or the masses are not determined.
     _, sizes, directions = np.linalg.svd(np.array(rows))

@@ -73,9 +73,8 @@ class DualProbe:
         if noise is None and not any(shifts):
             end, rows = self.end(place, h), [[0.0] * len(place.z)] * len(place.z)
         else:
-            with self.kind.running():
-                duals = self._call(self.kind, self.kind.state(*place.z), place, h)
-                end = [fraction(x.value) for x in duals]
+            duals = self._duals(self.kind, place, h)
+            end = [fraction(x.value) for x in duals]
             rows = [[float(a) for a in x.slopes] or [0.0] * len(place.z) for x in duals]
         coarse = self._unless_long(lambda: self._end(self.coarse, rounded_place, h)) or end
         errors = []
@@ -88,10 +87,7 @@ class DualProbe:
         return end, errors
 
     def _end(self, kind: Duals, place: TrialPlace, h: Fraction) -> list[Fraction]:
-        with kind.running():
-            one = (gmpy2.mpfr(1),)
-            state = [DualNumber(kind, kind.rational(x).value, one) for x in place.z]
-            return [fraction(x.value) for x in self._call(kind, state, place, h)]
+        return [fraction(x.value) for x in self._duals(kind, place, h, gmpy2.mpfr(1))]
 
     def round_number(self, x: Fraction) -> Fraction:
         """Return x unchanged: dual numbers have enough digits."""
@@ -108,16 +104,12 @@ class DualProbe:
 
     def jacobian(self, place: TrialPlace, h: Fraction) -> tuple[Matrix, list[list[float]]]:
         """Return J, and the noise of its entries. Raises StepError, and what the code raises."""
-        fine = self._jacobian(self.kind, place, h)
+        fine = self.sharp_jacobian(place, h)
         comparisons = self.kind.comparisons
         errors = [[_MIN_ROUNDINGS * _UNIT_ROUNDOFF * abs(float(x)) for x in row] for row in fine]
         self._add_rounding(errors, fine, place, h)
         self.kind.comparisons = comparisons
         return fine, errors
-
-    def sharp_jacobian(self, place: TrialPlace, h: Fraction) -> Matrix:
-        """Return J alone, as dual numbers have it."""
-        return self._jacobian(self.kind, place, h)
 
     def _add_rounding(
         self, errors: list[list[float]], fine: Matrix, place: TrialPlace, h: Fraction
@@ -127,13 +119,13 @@ class DualProbe:
         The place is rounded to doubles for this.
         """
         rounded_place = place.with_rounded_state(DOUBLE.round_number)
-        coarse = self._unless_long(lambda: self._jacobian(self.coarse, rounded_place, h))
+        coarse = self._unless_long(lambda: self.sharp_jacobian(rounded_place, h, self.coarse))
         if coarse is None:  # the errors stay at their minimum
             return
         # Both precisions must be compared at the same state: where rounding moves it, the fine
         # Jacobian is computed again.
         if rounded_place.z != place.z:
-            fine = self._jacobian(self.kind, rounded_place, h)
+            fine = self.sharp_jacobian(rounded_place, h)
         units = [float(x) for x in place.units]
         for row, one, two in zip(errors, coarse, fine, strict=True):
             gaps = [abs(float(x) - float(y)) * u for x, y, u in zip(one, two, units, strict=True)]
@@ -149,23 +141,26 @@ class DualProbe:
         except Exception:  # the user's code may raise anything
             return None
 
-    def _jacobian(self, kind: Duals, place: TrialPlace, h: Fraction) -> Matrix:
-        with kind.running():
-            end = self._call(kind, kind.state(*place.z), place, h)
-            zeros = (gmpy2.mpfr(0),) * len(place.z)
-            return [x.slopes or zeros for x in end]
+    def sharp_jacobian(self, place: TrialPlace, h: Fraction, kind: Duals | None = None) -> Matrix:
+        """Return J alone, as dual numbers have it, those of 200 bits or of this kind."""
+        zeros = (gmpy2.mpfr(0),) * len(place.z)
+        return [x.slopes or zeros for x in self._duals(kind or self.kind, place, h)]
 
-    def _call(
-        self, kind: Duals, state: list[DualNumber], place: TrialPlace, h: Fraction
+    def _duals(
+        self, kind: Duals, place: TrialPlace, h: Fraction, *slope: "gmpy2.mpfr"
     ) -> list[DualNumber]:
+        """Return z' with its derivatives by z; `slope`: that of each z along one direction, in
+        place of all."""
         kind.comparisons = []
-        step, size, clock = self.step, kind.rational(h), kind.rational(place.t)
-        result: list[Theirs] = step.call(
-            self._functions[kind.bits], state, size, clock, kind.rational
-        )
-        end: list[DualNumber] = lift_numbers(state[0], result)
-        if not all(gmpy2.is_finite(x.value) for x in end):
-            raise StepError("it returns what is not finite")
+        with kind.running():
+            state = kind.state(*place.z)
+            state = [DualNumber(kind, x.value, slope) for x in state] if slope else state
+            size, clock = kind.rational(h), kind.rational(place.t)
+            function = self._functions[kind.bits]
+            result: list[Theirs] = self.step.call(function, state, size, clock, kind.rational)
+            end: list[DualNumber] = lift_numbers(state[0], result)
+            if not all(gmpy2.is_finite(x.value) for x in end):
+                raise StepError("it returns what is not finite")
         return end
 
 

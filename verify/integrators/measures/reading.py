@@ -1,18 +1,21 @@
-"""S = JᵀΩJ − Ω and det J − 1 of a measured Jacobian J, each with its noise.
+"""Readings of a defect at a place: its components, each with its noise and natural scale.
 
-The noise of an entry of S is computed from that of each entry of J, so that the result does not
-depend on the units of the coordinates: it is the same in kilometres and in metres.
+Those of S = JᵀΩJ − Ω, with det J − 1, are computed from a measured Jacobian J. The noise of an
+entry of S is computed from that of each entry of J, so that the result does not depend on the units
+of the coordinates: it is the same in kilometres and in metres.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
 from math import prod
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, Generic, TypeAlias, TypeVar
 
 import gmpy2
 
+from verify.integrators.measures.error_powers import Row
 from verify.integrators.places.trial_places import TrialPlace
 from verify.integrators.tracing.replacements import eliminate
 
@@ -23,52 +26,93 @@ Matrix: TypeAlias = "Sequence[Sequence[Real]]"  # by rows
 READING_BITS = 250
 # The roundings, in the numbers of the code, that are allowed in each entry of JᵀΩJ.
 _ROUNDINGS_OF_ENTRY = 32
-_NOISE_FACTOR = 4  # an entry is clear of its noise if it exceeds it by this factor
+Key = TypeVar("Key")  # of a component
 
 
 @dataclass(frozen=True)
-class DefectReading:
-    """The entries a < b of S, and det J − 1, at a place with step size h (0 for a map without h).
+class Component:
+    """A component of a defect: its value, its noise, and its natural scale at the place."""
 
-    `entries` and `noise` are in the user's units. `scales` convert an entry to units of the place,
-    in which the entries of Ω are about 1: `defect` and `blur` are in these. `volume`: det J − 1,
-    with its noise. `jacobian`: J by rows, as floats.
-    """
+    value: float
+    noise: float
+    scale: float
+
+    @property
+    def ratio(self) -> float:
+        """The ratio of the value to its noise."""
+        return abs(self.value) / self.noise if self.noise else math.inf if self.value else 0.0
+
+    @property
+    def defect(self) -> float:
+        """The absolute value in units of the scale."""
+        return abs(self.value) / self.scale if self.scale else abs(self.value)
+
+    @property
+    def blur(self) -> float:
+        """The noise in units of the scale."""
+        return self.noise / self.scale if self.scale else self.noise
+
+    def __str__(self) -> str:
+        return f"{self.value:.6e} ± {self.noise:.1e}"
+
+
+@dataclass(frozen=True)
+class Reading(Generic[Key]):
+    """The components of a defect at a place, with the step size h (0 for a map)."""
+
+    clear_ratio: ClassVar[float] = (
+        32.0  # a component is clear of its noise if it is larger so often
+    )
 
     place: TrialPlace
     h: Fraction
-    entries: dict[Indices, float]
-    noise: dict[Indices, float]
-    scales: dict[Indices, float]
+    components: dict[Key, Component]
+
+    @property
+    def ratio(self) -> float:
+        """The largest ratio of a component to its noise."""
+        return max(x.ratio for x in self.components.values())
+
+    @property
+    def largest(self) -> tuple[Key, Component]:
+        """The name of the largest component, among those clear of their noise if any are, and the
+        component."""
+        clear = [x for x in self.components.items() if x[1].ratio > self.clear_ratio]
+        return max(clear or self.components.items(), key=lambda x: x[1].defect)
+
+    @property
+    def defect(self) -> float:
+        """The largest component in units of its scale."""
+        return max(x.defect for x in self.components.values())
+
+    @property
+    def blur(self) -> float:
+        """The largest noise, in units of the scales."""
+        return max(x.blur for x in self.components.values())
+
+    @property
+    def row(self) -> Row:
+        """h, the defect and the blur."""
+        return float(self.h), self.defect, self.blur
+
+
+KeptReading = Reading[str]
+
+
+@dataclass(frozen=True)
+class DefectReading(Reading[Indices]):
+    """The entries a < b of S; with det J − 1, `volume`, and its noise. `jacobian`: J by rows."""
+
+    clear_ratio: ClassVar[float] = 4.0
+
     volume: float
     volume_noise: float
     jacobian: tuple[tuple[float, ...], ...]
 
     @property
-    def worst(self) -> Indices:
-        """The entry with the largest ratio to its noise."""
-        return max(self.entries, key=lambda at: abs(self.entries[at]) / self.noise[at])
-
-    @property
-    def largest_entry(self) -> Indices:
-        """The largest entry in units of the place, among those clear of their noise if any are."""
-        clear = [at for at, x in self.entries.items() if abs(x) > _NOISE_FACTOR * self.noise[at]]
-        return max(clear or self.entries, key=lambda at: abs(self.entries[at]) * self.scales[at])
-
-    @property
-    def beyond(self) -> float:
-        """The ratio of the worst entry to its noise."""
-        return abs(self.entries[self.worst]) / self.noise[self.worst]
-
-    @property
     def defect(self) -> float:
-        """The absolute value of `largest_entry`, in units of the place."""
-        return abs(self.entries[self.largest_entry]) * self.scales[self.largest_entry]
-
-    @property
-    def blur(self) -> float:
-        """The largest noise of an entry, in units of the place."""
-        return max(x * self.scales[at] for at, x in self.noise.items())
+        """The largest entry in units of its scale, among those clear of their noise if any are."""
+        return self.largest[1].defect
 
 
 def reading_of(
@@ -84,7 +128,7 @@ def reading_of(
         columns = list(zip(*jacobian, strict=True))
         blurs = list(zip(*errors, strict=True))
         sizes = [[abs(float(x)) for x in column] for column in columns]
-        entries, noise, scales = {}, {}, {}
+        components = dict[Indices, Component]()
         # Pairs (p_i, q_i) may have different units of action. An entry of S between two pairs,
         # where Ω is 0, is compared with the mean of these units.
         action = [units[i] * units[half + i] for i in range(half)]
@@ -99,13 +143,13 @@ def reading_of(
                 j = half + i
                 total += u[i] * v[j] - u[j] * v[i]
                 blur += e[i] * y[j] + e[j] * y[i] + f[j] * x[i] + f[i] * x[j]
-            entries[a, b] = float(total)
-            scales[a, b] = units[a] * units[b] / (action[a % half] if b == a + half else mean)
-            noise[a, b] = blur + _ROUNDINGS_OF_ENTRY * epsilon / scales[a, b]
+            scale = (action[a % half] if b == a + half else mean) / (units[a] * units[b])
+            noise = blur + _ROUNDINGS_OF_ENTRY * epsilon * scale
+            components[a, b] = Component(float(total), noise, scale)
         volume, blur = volume_change(jacobian, errors, place.units)
         blur += _ROUNDINGS_OF_ENTRY * epsilon
     rows = tuple(tuple(map(float, row)) for row in jacobian)
-    return DefectReading(place, h, entries, noise, scales, float(volume), blur, rows)
+    return DefectReading(place, h, components, float(volume), blur, rows)
 
 
 def volume_change(

@@ -18,7 +18,7 @@ from verify.integrators.user_code.step import unless_it_fails
 Line = tuple[str, int, int]  # file, line, instruction
 _OVERSHOOT = 1.25  # a Newton step is longer by this factor, so that it ends on the other side
 _MAX_NEWTON_STEPS, _MAX_LINES = 6, 12
-_MIN_COMPARISONS_OF_LOOP = 4  # a line with as many comparisons in one call belongs to a loop
+MIN_COMPARISONS_OF_LOOP = 4  # a line with as many comparisons in one call belongs to a loop
 _MAX_BRANCHES_OF_LINE = 50
 
 
@@ -60,7 +60,7 @@ class Sides:
         for line, several in by_line.items():
             # A line that compares many times in one call, or with both signs, belongs to a loop,
             # whose end is no branch of the map.
-            if len({x.sign for x in several}) == 1 and len(several) < _MIN_COMPARISONS_OF_LOOP:
+            if len({x.sign for x in several}) == 1 and len(several) < MIN_COMPARISONS_OF_LOOP:
                 signs[line] = several[0].sign
                 branches = self.branches.setdefault(line, [])
                 if len(branches) < _MAX_BRANCHES_OF_LINE:

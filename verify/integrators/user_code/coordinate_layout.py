@@ -4,7 +4,6 @@ The names of the coordinates may be the user's, their number may be odd, and no 
 q. A step takes h besides, and perhaps t.
 """
 
-import inspect
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -12,13 +11,19 @@ from fractions import Fraction
 from itertools import groupby
 
 from verify.errors import InputError
-from verify.integrators.user_code.layout import CallLayout, array, role_of, shapes
+from verify.integrators.user_code.layout import (
+    POSITIONAL,
+    CallLayout,
+    array,
+    role_of,
+    shapes,
+    signature_of,
+)
 from verify.integrators.user_code.loading import Callee, check_time_limit
 from verify.integrators.user_code.step import Theirs
 from verify.integrators.user_code.user_map import UserMap
 
 Groups = tuple[tuple[int, ...], ...]  # the indices of the coordinates in each argument
-_POSITIONAL = inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
 
 
 @dataclass(frozen=True)
@@ -88,16 +93,8 @@ def callee_of_coordinates(
     """
     check_time_limit(time_limit)
     values = dict(parameters or {})
-    try:
-        signature = list(inspect.signature(function).parameters.values())
-    except (TypeError, ValueError):  # some functions written in C have none
-        signature = []
-    text = f"{getattr(function, '__name__', 'step')}({', '.join(map(str, signature))})"
-    taken = {x.name for x in signature}
-    for name in values if not stepped else ():
-        if name not in taken:
-            raise InputError("parameter", name, f"is no argument of {text}")
-    free = [x for x in signature if x.kind in _POSITIONAL and x.name not in values]
+    signature, text = signature_of(function, () if stepped else values)
+    free = [x for x in signature if x.kind in POSITIONAL and x.name not in values]
     needed = [x.name for x in free if x.default is x.empty]
     if stepped and not any(_is("h", x, names) for x in needed):
         # An h with a default is h all the same; without a name of its own it is the last one.
@@ -113,7 +110,7 @@ def callee_of_coordinates(
         listed = ", ".join(names)
         problem = f"its arguments do not hold the {len(names)} coordinates {listed}"
         raise InputError("integrator" if stepped else "map", text, problem)
-    values = {name: x for name, x in values.items() if name in taken}
+    values = {x.name: values[x.name] for x in signature if x.name in values}
     step = UserMap(function, layouts[0], names, values, limit=time_limit)
     return Callee(step, tuple(layouts), True, tuple(needed))
 

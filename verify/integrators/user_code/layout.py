@@ -4,14 +4,17 @@ A state z is always p1 … pn, q1 … qn here. The user's function may take it a
 arrays of any shape, two lists, or one object that holds both halves, in either order.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+import inspect
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
 from typing import Any
 
+from verify.errors import InputError
 from verify.integrators.user_code.step import StepError, Theirs
 
+POSITIONAL = inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
 # The names that people use for the arguments of a step, with the role of each.
 ROLES = {
     **dict.fromkeys(
@@ -31,6 +34,25 @@ ROLES = {
 def role_of(name: str) -> str:
     """Return the role of an argument by its name: p, q, t, h or z; "" if the name does not tell."""
     return ROLES.get(name.lower().strip("_"), "")
+
+
+def signature_of(
+    function: Callable[..., Theirs], needed: Iterable[str]
+) -> tuple[list[inspect.Parameter], str]:
+    """Return the arguments of a function, and its signature as text.
+
+    Raises InputError if one of the `needed` parameters is none of them.
+    """
+    try:
+        parameters = list(inspect.signature(function).parameters.values())
+    except (TypeError, ValueError):  # some functions written in C have none
+        parameters = []
+    text = f"{getattr(function, '__name__', 'step')}({', '.join(map(str, parameters))})"
+    names = {x.name for x in parameters}
+    for name in needed:
+        if name not in names:
+            raise InputError("parameter", name, f"is no argument of {text}")
+    return parameters, text
 
 
 class StatePair(tuple[Theirs, ...]):

@@ -20,13 +20,18 @@ from pathlib import Path
 from types import ModuleType
 
 from verify.errors import InputError, find_nearest, format_suggestion
-from verify.integrators.user_code.layout import CallLayout, layouts_of, role_of
+from verify.integrators.user_code.layout import (
+    POSITIONAL,
+    CallLayout,
+    layouts_of,
+    role_of,
+    signature_of,
+)
 from verify.integrators.user_code.step import TIME_LIMIT, Theirs, contain_effects, last_line
 from verify.integrators.user_code.user_map import UserMap
 
 _MAX_TIME_LIMIT = 86_400  # seconds
 _MAX_LISTED = 8  # functions in an error message
-_POSITIONAL = inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
 # The roles of the arguments, a letter each: of a step (True), and of a map (False).
 _ROLES_OF_CALL = {True: ("pqth", "pqh", "zth", "zh"), False: ("pq", "z")}
 _EXPECTED_SIGNATURE = {
@@ -213,17 +218,8 @@ class _Signature:
         strict: bool,
     ) -> None:  # fmt: skip
         self.stepped, self.record = stepped, None
-        self.takes: set[str] = set()
-        try:
-            parameters = list(inspect.signature(function).parameters.values())
-        except (TypeError, ValueError):  # some functions written in C have none
-            parameters = []
-        self.text = f"{getattr(function, '__name__', 'step')}({', '.join(map(str, parameters))})"
-        parameter_names = {x.name for x in parameters}
-        for name in values if strict else ():
-            if name not in parameter_names:
-                raise InputError("parameter", name, f"is no argument of {self.text}")
-        places = [x for x in parameters if x.kind in _POSITIONAL]
+        parameters, self.text = signature_of(function, values if strict else ())
+        places = [x for x in parameters if x.kind in POSITIONAL]
         self.variadic = not parameters or any(x.kind is x.VAR_POSITIONAL for x in parameters)
         # An argument of a step that has the name of a coordinate, or of h, is that, even if H has a
         # parameter of this name.

@@ -6,7 +6,7 @@ in our number classes (symbols, dual numbers), or in the number type of another 
 
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -77,6 +77,7 @@ def type_of(name: str) -> NumberType:
 
 
 State = tuple[float, ...]
+_SHARE_FOR_FLOATS = 0.4  # a part of the time that is left; dual numbers, which are slow, come first
 
 
 @dataclass
@@ -137,6 +138,17 @@ class UserMap:
     def probe_kinds(self) -> tuple[str, ...]:
         """The kinds of probe that can measure it, the sharpest first."""
         return ("floats",) if self.foreign else ("duals", "floats")
+
+    def try_probes(self) -> Iterator[str]:
+        """Yield the kinds of probe, with a part of the time held back for the last of them."""
+        first, *others = self.probe_kinds
+        reserve = _SHARE_FOR_FLOATS * max(self.seconds_left, 0) if others else 0.0
+        self.hold_back(reserve)
+        try:
+            yield first
+        finally:  # also where it has sufficed
+            self.hold_back(-reserve)
+        yield from others
 
     def call(
         self,

@@ -39,8 +39,8 @@ def test_one_entry_that_is_off_moves_s_and_det_j_by_what_is_said(size: int, seed
         moved = [[x + e for x, e in zip(*rows, strict=True)]
                  for rows in zip(jacobian, errors, strict=True)]  # fmt: skip
         found, other = read(jacobian, errors), read(moved, errors)
-        for at, x in found.entries.items():
-            assert found.noise[at] == pytest.approx(abs(other.entries[at] - x), abs=1e-12), at
+        for at, x in found.components.items():
+            assert x.noise == pytest.approx(abs(other.components[at].value - x.value), abs=1e-12)
         change = abs(other.volume - found.volume)
         assert found.volume_noise == pytest.approx(change, rel=1e-6, abs=1e-9)
 
@@ -54,5 +54,5 @@ def test_errors_of_all_entries_add_up_whatever_their_signs_are(size: int) -> Non
         moved = [[x + e * draw.choice((1, -1)) for x, e in zip(*rows, strict=True)]
                  for rows in zip(jacobian, errors, strict=True)]  # fmt: skip
         other = read(moved, errors)
-        for at, x in found.entries.items():
-            assert abs(other.entries[at] - x) <= found.noise[at] * (1 + 2**-10), at
+        for at, x in found.components.items():
+            assert abs(other.components[at].value - x.value) <= x.noise * (1 + 2**-10), at

@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from verify.integrators.measures.structure_measurement import StructureMeasurement, farthest_of
+from verify.integrators.measures.measurement import farthest_of
+from verify.integrators.measures.structure_measurement import StructureMeasurement
 
 NAMES = ("q", "p")
 
