@@ -205,7 +205,8 @@ def _prove_one(hamiltonian: "Hamiltonian", scheme: str, certificate: Path | None
         if potential is None:  # in n degrees of freedom: S in place of ΔJ
             show.print_symplectic(hamiltonian.texts, integrator.name, proof)
         else:
-            show.print_proof(hamiltonian, integrator.name, proof, potential, special)
+            closed = proof.step_map.delta_j_text
+            show.print_proof(hamiltonian, integrator.name, proof, potential, closed, special)
 
     return CommandAnswer(
         lambda: show.proof_json(hamiltonian.texts, integrator.name, proof, **extra_json()),

@@ -229,7 +229,8 @@ def _print(
         proof_view = replace(s_proof, verdict=finding.verdict, reason=finding.reason)
         show.print_symplectic(hamiltonian.texts, target, proof_view)
     elif proof is not None and finding.verdict is proof.verdict:
-        show.print_proof(hamiltonian, target, proof, potential_of_finding(finding))
+        potential = potential_of_finding(finding)
+        show.print_proof(hamiltonian, target, proof, potential, finding.delta_j)
     else:
         show.print_head(hamiltonian, target, finding)
         if finding.leading is not None and finding.order is not None and degrees == 1:

@@ -131,14 +131,15 @@ def print_proof(
     scheme: str,
     proof: "Proof",
     potential: "Potential",
+    closed: str | None,
     special: "Iterable[SpecialValue]" = (),
 ) -> None:
+    """Print the proof of the order; `closed`: the formula of ΔJ, None if that is too large."""
     print_head(hamiltonian, scheme, proof)
     if proof.order is not None:
         click.echo(f"  ΔJ       ({cut(proof.first.text)})·h^{proof.order} + O(h^{proof.order + 1})")
         point = point_text(proof.witness) or "any point"
         click.echo(f"  witness  {point}: the coefficient is {proof.enclosure}")
-    closed = proof.step_map.delta_j_text
     formula = "left out: the closed form is too large" if closed is None else cut(closed)
     click.echo(f"  exactly  ΔJ = {formula}")
     operator = "D" if hamiltonian.time_dependent else "X"  # D = ∂_t + X

@@ -36,6 +36,8 @@ def note_constants(readings: Sequence[DefectReading], names: Sequence[str]) -> l
     ):
         return []
     factors = [1 + x.value for x in entries]
+    if all(x.ratio <= REFUTING_RATIO for x in entries):  # a proof alone shows that S is not 0
+        return []
     if all(abs(x.value + 2) <= REFUTING_RATIO * x.noise for x in entries):
         return [f"S = −2Ω: {_describe_turn(readings, names)}"]
     numbers = ", ".join(f"{c:.6g}" for c in factors)

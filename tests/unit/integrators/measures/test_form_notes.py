@@ -2,12 +2,16 @@
 
 import math
 from collections.abc import Callable
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pytest
 
 import verify
+from verify.integrators.measures.form_notes import note_constants
+from verify.integrators.measures.reading import Component, DefectReading
+from verify.integrators.places.trial_places import TrialPlace
 
 PENDULUM = "p**2/2 - cos(q)"
 MASSES = np.array([1.0, 3.0])
@@ -73,3 +77,15 @@ def test_a_step_that_turns_p_or_returns_velocities_is_named() -> None:
         PENDULUM, lambda p, q, h: (verlet(p, q, h)[0] * math.exp(-h), verlet(p, q, h)[1])
     )
     assert not [x for x in damped.notes if "velocities" in x]
+
+
+def test_a_form_that_is_kept_within_its_noise_shows_no_mistake() -> None:
+    """As where a proof alone tells that an iteration of many turns ends early."""
+    one = Fraction(1)
+    place = TrialPlace((one, one), Fraction(0), (one, one), (one, one))
+    for value, expected in ((1e-30, 0), (0.5, 1)):
+        readings = [
+            DefectReading(place, h, {(0, 1): Component(value, 1e-16, 1.0)}, 0.0, 1e-16, ())
+            for h in (one, one / 2)
+        ]
+        assert len(note_constants(readings, ("p", "q"))) == expected
