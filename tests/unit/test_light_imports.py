@@ -1,5 +1,6 @@
 """Light commands stay light: what a command does not need is not imported."""
 
+import re
 import subprocess
 import sys
 from collections.abc import Mapping, Set
@@ -135,3 +136,13 @@ def test_what_carries_no_points_loads_no_numpy(
     command = [sys.executable, "-c", SAID.format(arguments=arguments)]
     done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT)
     assert done.stderr.splitlines()[-1] == str(loaded)
+
+
+def test_annotations_import_no_sympy() -> None:
+    """A class or a function whose annotations are evaluated would import what is to come late."""
+    late = re.compile(r"(: |-> |\[)sympy\.")
+    texts = {path: path.read_text("utf-8") for path in sorted((ROOT / "verify").rglob("*.py"))}
+    lazy = {p: t for p, t in texts.items() if "from verify.lazy_sympy import sympy" in t}
+    assert len(lazy) >= 40
+    eager = [p for p, t in lazy.items() if late.search(t) and "import annotations" not in t]
+    assert not eager

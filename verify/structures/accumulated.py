@@ -5,6 +5,8 @@ defect, MᵀΩ(z_N)M − c^N Ω(z_0), as of those of one step. In a run it is na
 `density = 1/(u*v)`, `form = 2*dv^dx`, `factor = exp(-h); form = dv^dx`, `poisson = 0, u; -u, 0`.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -4,6 +4,8 @@ The flow of H = I keeps I, and so does that of each function of I, also if it de
 degrees of freedom further examples are invariant under turns, or under moves along q1 + q2.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial

@@ -5,6 +5,8 @@ in these too. If an enclosure of it at some point, for all numbers within ten un
 digits, excludes 0, no coefficients that the digits may stand for keep the structure up to hⁿ.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial

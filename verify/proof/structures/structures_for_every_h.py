@@ -4,6 +4,8 @@ A theorem on the coefficients shows that the structure is kept; the map's order 
 power of h its defect has no term; an example, one H, shows that the defect is not 0.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -7,6 +7,8 @@
   q' − q is the stage at 1 − a and 1 − b; b is the share of h at which the stage reads the time.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import Any
 

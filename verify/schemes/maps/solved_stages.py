@@ -4,6 +4,8 @@ So they are for linear fields, and where some coordinates move on their own, wit
 linear beside them. No power of h shows what such a step keeps for all h.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 
