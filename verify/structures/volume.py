@@ -7,8 +7,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from verify.algebra.expressions.formula_text import to_text
+from verify.errors import LimitError
 from verify.lazy_sympy import sympy
 from verify.structures.structure import StepValues, Structure, Value, accumulated_defect, is_zero
+
+_MOST_MINORS = 15_000  # of 16 rows there are 12,870 at most
 
 
 @dataclass(frozen=True)
@@ -54,20 +57,27 @@ class Volume(Structure):
 
 
 def determinant(matrix: Sequence[Sequence[Value]]) -> Value:
-    """Return the determinant by its minors of the first k rows, k = 1, 2, …, without division."""
+    """Return the determinant by its minors of the first k rows, k = 1, 2, …, without division.
+
+    Raises LimitError where too many minors are not 0.
+    """
     size = len(matrix)
-    minors: dict[tuple[int, ...], Value] = {(k,): matrix[0][k] for k in range(size)}
+    minors: dict[tuple[int, ...], Value] = {(k,): x for k, x in enumerate(matrix[0]) if x != 0}
     for row in matrix[1:]:
         longer: dict[tuple[int, ...], Value] = {}
+        entries = {k: x for k, x in enumerate(row) if x != 0}
         for columns, minor in minors.items():
-            for column in set(range(size)).difference(columns):
+            for column in entries.keys() - set(columns):
                 key = tuple(sorted((*columns, column)))
                 # The sign of the last row's entry in the expansion of the larger minor.
-                term = row[column] * minor
+                term = entries[column] * minor
                 odd = (len(key) - 1 - key.index(column)) % 2
                 if key not in longer:
                     longer[key] = term * -1 if odd else term
                 else:
                     longer[key] = longer[key] - term if odd else longer[key] + term
-        minors = longer
-    return minors[tuple(range(size))]
+        if len(longer) > _MOST_MINORS:
+            problem = f"coordinates are too many: det J has more than {_MOST_MINORS} minors"
+            raise LimitError("volume", size, problem)
+        minors = {key: x for key, x in longer.items() if x != 0}
+    return minors.get(tuple(range(size)), matrix[0][0] - matrix[0][0])
