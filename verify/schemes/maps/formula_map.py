@@ -41,9 +41,9 @@ def step_map_from_formulas(
     substitutions: dict[sympy.Symbol, sympy.Expr] = {}
     domain = FormulaDomain.from_requirements(())
     for name, formula in formulas.items():
-        read = StepFormula(hamiltonian, formula, names, name)
         # Formulas may use earlier ones, so that substitution can grow exponentially.
         with limit_effort(name, formula, "to put what stands before into it"):
+            read = StepFormula(hamiltonian, formula, names, name)
             domain &= read.domain.substitute(substitutions).substitute(
                 hamiltonian.value_substitutions
             )

@@ -12,12 +12,13 @@ import re
 from collections.abc import Sequence
 
 from verify.algebra.domain import FormulaDomain
-from verify.algebra.formula import read, symbol
-from verify.errors import InputError
+from verify.algebra.formula import MAX_LENGTH, read, symbol
+from verify.errors import InputError, LimitError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.lazy_sympy import sympy
 
 _CALLED = re.compile(r"H_\w+", re.ASCII)
+_MOST_NESTED = 20  # derivatives, each in an argument of another
 
 
 class StepFormula:
@@ -34,32 +35,35 @@ class StepFormula:
         self._coordinates = (*hamiltonian.coordinates, *names_of_time(hamiltonian))
         self._values: dict[sympy.Symbol, sympy.Expr] = {}  # of the calls, by their names
         self.domain = FormulaDomain.from_requirements(())
-        self.expression = self._read(formula)
+        self.expression = self._read(formula, 0)
 
-    def _read(self, formula: str) -> sympy.Expr:
-        text = self._replace_calls(formula)
+    def _read(self, formula: str, depth: int) -> sympy.Expr:
+        if depth > _MOST_NESTED:
+            problem = f"has derivatives of H nested deeper than {_MOST_NESTED}"
+            raise LimitError(self._source, formula, problem)
+        text = self._replace_calls(formula, depth)
         names = [*self._names, *map(str, self._values)]
         expression, requirements = read(text, names, source=self._source)
         self.domain &= FormulaDomain.from_requirements(requirements).substitute(self._values)
         return expression.xreplace(self._values)
 
-    def _replace_calls(self, formula: str) -> str:
+    def _replace_calls(self, formula: str, depth: int) -> str:
         """Return the formula with a name in place of each call."""
-        if "H_" not in formula:
-            return formula
+        if "H_" not in formula or len(formula) > MAX_LENGTH or not formula.isascii():
+            return formula  # `read` says what is wrong
         line = " ".join(formula.replace("^", "**").split())
         try:
             tree = ast.parse(line, mode="eval").body
         except (SyntaxError, ValueError, RecursionError, MemoryError):
             return formula  # `read` says what is wrong
         for call in reversed(_outermost_calls(tree, self._names)):
-            value = self._differentiate(call, line)
+            value = self._differentiate(call, line, depth)
             name = symbol(f"H_value_{len(self._values)}")
             self._values[name] = value
             line = f"{line[: call.col_offset]}{name}{line[call.end_col_offset :]}"
         return line
 
-    def _differentiate(self, call: ast.Call | ast.Name, line: str) -> sympy.Expr:
+    def _differentiate(self, call: ast.Call | ast.Name, line: str, depth: int) -> sympy.Expr:
         name = ast.unparse(getattr(call, "func", call))
         letters = name.removeprefix("H_")
         pattern = "|".join(sorted(self._coordinates, key=len, reverse=True))
@@ -69,11 +73,13 @@ class StepFormula:
             raise self._error(line, f"{name} is no derivative of H; allowed: {allowed}")
         derivative = self._hamiltonian.expression.diff(*map(symbol, variables))
         needed = [x for x in self._coordinates if symbol(x) in derivative.free_symbols]
-        return derivative.xreplace(self._point(call, name, line, needed))
+        texts = self._point(call, name, line, needed)
+        return derivative.xreplace({symbol(x): self._read(y, depth + 1) for x, y in texts.items()})
 
     def _point(
         self, call: ast.Call | ast.Name, name: str, line: str, needed: Sequence[str]
-    ) -> dict[sympy.Symbol, sympy.Expr]:
+    ) -> dict[str, str]:
+        """Return the texts of the arguments, by their coordinates."""
         point: dict[str, str] = {}
         others = []
         arguments, keywords = getattr(call, "args", []), getattr(call, "keywords", [])
@@ -94,7 +100,7 @@ class StepFormula:
             form = ", ".join(f"{x}=…" for x in needed)
             problem = f"{name} depends on {', '.join(needed) or 'nothing'}; write {name}({form})"
             raise self._error(line, problem)
-        return {symbol(x): self._read(text) for x, text in point.items()}
+        return point
 
     def _error(self, line: str, problem: str) -> InputError:
         return InputError(self._source, line, problem)
@@ -107,10 +113,15 @@ def names_of_time(hamiltonian: Hamiltonian) -> tuple[str, ...]:
 
 def _outermost_calls(tree: ast.AST, names: Sequence[str]) -> list[ast.Call | ast.Name]:
     """Return the derivatives that stand in no other, in their order; also those without a point."""
-    name = getattr(getattr(tree, "func", tree), "id", "")
-    if isinstance(tree, ast.Call | ast.Name) and _CALLED.fullmatch(name) and name not in names:
-        return [tree]
-    calls = [call for x in ast.iter_child_nodes(tree) for call in _outermost_calls(x, names)]
+    calls: list[ast.Call | ast.Name] = []
+    waiting = [tree]  # no recursion: a sum of a thousand terms is a thousand levels deep
+    while waiting:
+        node = waiting.pop()
+        name = getattr(getattr(node, "func", node), "id", "")
+        if isinstance(node, ast.Call | ast.Name) and _CALLED.fullmatch(name) and name not in names:
+            calls.append(node)
+        else:
+            waiting += ast.iter_child_nodes(node)
     return sorted(calls, key=lambda call: call.col_offset)
 
 

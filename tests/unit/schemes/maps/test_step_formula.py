@@ -114,3 +114,24 @@ def test_a_step_in_between_may_not_be_a_parameter_of_h() -> None:
 def test_time_has_to_be_said() -> None:
     with pytest.raises(InputError, match=r"H_q depends on q, t; write H_q\(q=…, t=…\)"):
         schemes.get("p_next = p - h*H_q(q); q_next = q + h*p").step_map(DRIVEN)
+
+
+HOSTILE = {
+    "a sum a thousand levels deep": ("H_q(q)" + " + 0*p" * 800, ""),
+    "too long": ("H_q(q)" + " + 0*p" * 900, "longer than 5000 characters"),
+    "nested too deeply": ("H_q(" * 30 + "q" + ")" * 30, "nested deeper than 20"),
+    "of too many terms": ("H_q(q + h*" * 19 + "q" + ")" * 19, "takes too long"),
+    "a letter that is not ASCII": ("H_q(θ)", r"H_q\(θ\).*write theta"),
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_hostile_formula_is_read_or_refused_in_a_line(name: str) -> None:
+    formula, problem = HOSTILE[name]
+    scheme = schemes.get(f"p_next = p - h*{formula}; q_next = q + h*p")
+    hamiltonian = Hamiltonian.parse("p**2/2 + sin(q)*exp(q**2)")
+    if not problem:
+        assert scheme.step_map(hamiltonian).composed
+        return
+    with pytest.raises(InputError, match=problem):
+        scheme.step_map(hamiltonian)
