@@ -155,6 +155,15 @@ PrintedDecimal = Annotated[str, BeforeValidator(_normalize)]
 PrintedRow = Annotated[tuple[PrintedDecimal, ...], Field(min_length=1, max_length=1000)]
 
 
+MORE_DIGITS = 3  # of a value beside a printed one, beyond those that are printed
+# How a value stands to a printed one, by the answer of `rounds_to`.
+ROUNDING = {
+    True: "which rounds to",
+    False: "which does not round to",
+    None: "not known to round to",
+}
+
+
 def holds(run: RunResult, quantity: str, printed: str) -> bool | None:
     """Return True if the run's value rounds to the printed one; None if only in part."""
     source = run.values[QUANTITIES[quantity].needs[0]]

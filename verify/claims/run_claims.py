@@ -181,6 +181,14 @@ class RunClaim(Claim):
         rows = [runs[i : i + width] for i in range(0, len(runs), width)]
         return [sorted(row, key=lambda run: Fraction(run.step_size)) for row in rows]
 
+    def only_run(self, findings: Findings) -> RunResult:
+        """Return the run of a claim about one; InputError if its scene has several."""
+        (run, *other_runs), *other_rows = self.run_rows(findings)
+        if other_runs or other_rows:
+            problem = "speaks of one run; give step_size, q and p"
+            raise InputError(f"claim {self.id}", NOT_GIVEN, problem)
+        return run
+
     def run_at(self, row: Sequence[RunResult], step_size: Fraction) -> RunResult:
         """Return the run of a row with that step size; InputError if there is none."""
         for run in row:

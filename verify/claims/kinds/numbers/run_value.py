@@ -25,7 +25,13 @@ from verify.arithmetic.arb import (
     rational_ball,
 )
 from verify.claims.base_claim import Findings
-from verify.claims.quantities import PrintedDecimal, all_hold, rounds_to
+from verify.claims.quantities import (
+    MORE_DIGITS,
+    ROUNDING,
+    PrintedDecimal,
+    all_hold,
+    rounds_to,
+)
 from verify.claims.run_claims import RunClaim
 from verify.errors import NOT_GIVEN, InputError, unknown_name
 from verify.hamiltonians.canonical_field import field_of
@@ -36,14 +42,8 @@ from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
 from verify.verdict import Verdict
 
-_MORE_DIGITS = 3  # digits beyond those that are printed
 _COORDINATE = re.compile(r"[pq]([1-9]\d{0,2})?", re.ASCII)
 _PRECISION = 192
-_ROUNDS = {
-    True: "which rounds to",
-    False: "which does not round to",
-    None: "not known to round to",
-}
 
 
 class RunValueClaim(RunClaim):
@@ -110,19 +110,16 @@ class RunValueClaim(RunClaim):
             return self.result(Verdict.UNDECIDED, evidence)
         if self.at_most is None and self.at_least is None:
             answer = rounds_to(value, text)
-            relation = _ROUNDS[answer]
+            relation = ROUNDING[answer]
         else:
             answer, relation = _is_within(value, self.at_most, self.at_least)
-        digits = format_ball(value, len(text.partition("e")[0]) + _MORE_DIGITS)
+        digits = format_ball(value, len(text.partition("e")[0]) + MORE_DIGITS)
         evidence = prose(f"{self.label} = ", number(digits), f", {relation} ", Number(text), runs)
         return self.result(all_hold([answer]), evidence)
 
     def compute(self, findings: Findings) -> tuple[Ball, str]:
         """Return the number, and of which runs it is, in words."""
-        (run, *other_runs), *other_rows = self.run_rows(findings)
-        if other_runs or other_rows:
-            problem = "speaks of one run; give step_size, q and p"
-            raise InputError(f"claim {self.id}", NOT_GIVEN, problem)
+        run = self.only_run(findings)
         value = self.value_of_run(findings, run)
         value = lg(value) if self.lg_printed is not None else value
         return value, f", in {run.steps} steps"

@@ -5,18 +5,19 @@ from typing import Literal, Self
 from pydantic import model_validator
 
 from verify.claims.base_claim import Findings
-from verify.claims.quantities import QUANTITIES, PrintedDecimal, all_hold, format_value, holds
+from verify.claims.quantities import (
+    MORE_DIGITS,
+    QUANTITIES,
+    ROUNDING,
+    PrintedDecimal,
+    all_hold,
+    format_value,
+    holds,
+)
 from verify.claims.run_claims import RunClaim
 from verify.errors import NOT_GIVEN, InputError
 from verify.prose import Number, number, prose
 from verify.scenes.results.claim import ClaimResult
-
-_MORE_DIGITS = 3  # digits beyond those that are printed
-_RESULTS = {
-    True: "which rounds to",
-    False: "which does not round to",
-    None: "not known to round to",
-}
 
 
 class ValueClaim(RunClaim):
@@ -46,15 +47,11 @@ class ValueClaim(RunClaim):
 
     def compare(self, findings: Findings) -> ClaimResult:
         (quantity,), (printed,) = self.quantities(), self.printed_texts()
-        (run, *other_runs), *other_rows = self.run_rows(findings)
-        if other_runs or other_rows:
-            raise InputError(
-                f"claim {self.id}", NOT_GIVEN, "speaks of one run; give step_size, q and p"
-            )
+        run = self.only_run(findings)
         rounds = holds(run, quantity, printed)
-        digits = format_value(run, quantity, len(printed.partition("e")[0]) + _MORE_DIGITS)
+        digits = format_value(run, quantity, len(printed.partition("e")[0]) + MORE_DIGITS)
         evidence = prose(
-            f"{QUANTITIES[quantity].label} = ", number(digits), f", {_RESULTS[rounds]} ",
+            f"{QUANTITIES[quantity].label} = ", number(digits), f", {ROUNDING[rounds]} ",
             Number(printed), f", in {run.steps} steps",
         )  # fmt: skip
         return self.result(all_hold([rounds]), evidence)
